@@ -1,0 +1,1 @@
+//! Renders the sky of a spherical planet from Airlight's optical tables.

@@ -1,0 +1,3 @@
+//! The command `airlight`.
+
+fn main() {}

@@ -1,0 +1,262 @@
+//! The one reader of every file in `raw-data/`.
+//!
+//! A source is a CSV file in UTF-8 that begins with `# key: value` lines: `title`,
+//! `citation`, `source` (where the numbers were read), `retrieved`, `licence`,
+//! `changes`, and one `# unit <column>: <unit>` for each column; then the header row
+//! and the rows. A type that implements [`Row`] declares the columns it wants, with
+//! their units and sensible ranges, and how a line becomes SI.
+
+use super::{Fault, RawError};
+use serde::de::DeserializeOwned;
+use sha2::{Digest, Sha256};
+use std::path::Path;
+use tables::Provenance;
+
+/// A type that is read from one line of a source.
+pub trait Row: Sized {
+    /// The line as it stands, in the file's units, fields in the order of the columns.
+    type Record: DeserializeOwned;
+
+    /// The columns, in the file's order.
+    fn columns() -> Vec<Column>;
+
+    /// The line in the units of the program.
+    fn from_record(record: Self::Record) -> Self;
+}
+
+/// What a row type expects of one column.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    name: String,
+    unit: &'static str,
+    content: Content,
+    key: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Content {
+    Text,
+    Number { low: f64, high: f64, optional: bool },
+}
+
+impl Column {
+    /// A number from `low` to `high`, both in `unit` and both allowed.
+    #[must_use]
+    pub fn number(name: &str, unit: &'static str, low: f64, high: f64) -> Self {
+        let content = Content::Number { low, high, optional: false };
+        Self { name: name.into(), unit, content, key: false }
+    }
+
+    /// As [`Column::number`], but a field may be empty: no data.
+    #[must_use]
+    pub fn optional(name: &str, unit: &'static str, low: f64, high: f64) -> Self {
+        let content = Content::Number { low, high, optional: true };
+        Self { content, ..Self::number(name, unit, low, high) }
+    }
+
+    /// Any text.
+    #[must_use]
+    pub fn text(name: &str) -> Self {
+        Self { name: name.into(), unit: "text", content: Content::Text, key: false }
+    }
+
+    /// The same column as one of the keys by which the rows are sorted: from one row to
+    /// the next, the first key that changes must grow (a text key may change to any other),
+    /// and one of them must change.
+    #[must_use]
+    pub fn key(self) -> Self {
+        Self { key: true, ..self }
+    }
+}
+
+/// A source read, checked and converted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source<R> {
+    /// Where the numbers came from, with the checksum of the file.
+    pub provenance: Provenance,
+    /// The rows, at least one.
+    pub rows: Vec<R>,
+}
+
+impl<R: Row> Source<R> {
+    /// Reads `raw_dir/file`; `file` is the path below `raw-data/`, with forward slashes.
+    ///
+    /// # Errors
+    /// [`RawError`] with the file, line and column of the first thing that is wrong.
+    pub fn read(raw_dir: &Path, file: &str) -> Result<Self, RawError> {
+        let bytes = std::fs::read(raw_dir.join(file)).map_err(|e| RawError::new(file, Fault::Unreadable(e)))?;
+        Self::parse(file, &bytes)
+    }
+
+    /// Reads the bytes of a source called `file`.
+    ///
+    /// # Errors
+    /// As [`Source::read`].
+    pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, RawError> {
+        let text = std::str::from_utf8(bytes).map_err(|_| RawError::new(file, Fault::NotUtf8))?;
+        let header = Header::parse(file, text)?;
+        let rows = parse_rows::<R>(file, text, &header)?;
+        let provenance = Provenance {
+            file: file.into(),
+            title: header.get(file, "title")?,
+            citation: header.get(file, "citation")?,
+            source: header.get(file, "source")?,
+            licence: header.get(file, "licence")?,
+            sha256: Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect(),
+        };
+        for key in ["retrieved", "changes"] {
+            header.get(file, key)?;
+        }
+        Ok(Self { provenance, rows })
+    }
+
+    /// The same source if it has exactly `expected` rows.
+    ///
+    /// # Errors
+    /// [`Fault::WrongCount`].
+    pub fn with_rows(self, expected: usize) -> Result<Self, RawError> {
+        let found = self.rows.len();
+        if found == expected {
+            Ok(self)
+        } else {
+            Err(RawError::new(&self.provenance.file, Fault::WrongCount { expected, found }))
+        }
+    }
+}
+
+/// The `# key: value` lines.
+struct Header<'a> {
+    entries: Vec<(&'a str, &'a str)>,
+    /// Number of lines of the header.
+    lines: u64,
+    /// Bytes of the header, line ends included.
+    length: usize,
+}
+
+impl<'a> Header<'a> {
+    fn parse(file: &str, text: &'a str) -> Result<Self, RawError> {
+        let mut header = Self { entries: Vec::new(), lines: 0, length: 0 };
+        for line in text.split_inclusive('\n') {
+            let Some(entry) = line.strip_prefix('#') else { break };
+            header.lines += 1;
+            header.length += line.len();
+            match entry.split_once(':') {
+                Some((key, value)) => header.entries.push((key.trim(), value.trim())),
+                None => {
+                    let found = entry.trim().to_owned();
+                    return Err(RawError::new(file, Fault::MalformedHeader { found }).at_line(header.lines));
+                }
+            }
+        }
+        Ok(header)
+    }
+
+    fn find(&self, key: &str) -> Option<&'a str> {
+        self.entries.iter().find(|(k, v)| *k == key && !v.is_empty()).map(|(_, v)| *v)
+    }
+
+    fn get(&self, file: &str, key: &str) -> Result<String, RawError> {
+        self.find(key).map(str::to_owned).ok_or_else(|| RawError::new(file, Fault::MissingKey { key: key.into() }))
+    }
+}
+
+fn parse_rows<R: Row>(file: &str, text: &str, header: &Header) -> Result<Vec<R>, RawError> {
+    let columns = R::columns();
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .from_reader(&text.as_bytes()[header.length..]);
+    let mut rows = Vec::new();
+    let mut previous: Option<csv::StringRecord> = None;
+    for (i, record) in reader.records().enumerate() {
+        let record = record.map_err(|e| RawError::new(file, Fault::MalformedRow { found: e.to_string() }))?;
+        let line = header.lines + record.position().map_or(i as u64 + 1, csv::Position::line);
+        if i == 0 {
+            check_header_row(&columns, &record, header).map_err(|e| e.in_file(file).at_line(line))?;
+            continue;
+        }
+        check_record(&columns, &record, previous.as_ref()).map_err(|e| e.in_file(file).at_line(line))?;
+        let typed = record
+            .deserialize(None)
+            .map_err(|e| RawError::new(file, Fault::MalformedRow { found: e.to_string() }).at_line(line))?;
+        rows.push(R::from_record(typed));
+        previous = Some(record);
+    }
+    if rows.is_empty() { Err(RawError::new(file, Fault::NoRows)) } else { Ok(rows) }
+}
+
+/// Names and units of the header row against those declared.
+fn check_header_row(columns: &[Column], names: &csv::StringRecord, header: &Header) -> Result<(), RawError> {
+    for (i, column) in columns.iter().enumerate() {
+        let found = names.get(i).unwrap_or_default();
+        if found != column.name {
+            let fault = Fault::MissingColumn { position: i + 1, found: found.into() };
+            return Err(RawError::new("", fault).in_column(&column.name));
+        }
+        let unit = header.find(&format!("unit {found}"));
+        if unit != Some(column.unit) {
+            let fault = Fault::UnexpectedUnit { expected: column.unit.into(), found: unit.unwrap_or_default().into() };
+            return Err(RawError::new("", fault).in_column(&column.name));
+        }
+    }
+    match names.get(columns.len()) {
+        Some(found) => Err(RawError::new("", Fault::UnexpectedColumn).in_column(found)),
+        None => Ok(()),
+    }
+}
+
+/// One row against the declared columns, and its keys against those of the row before.
+fn check_record(
+    columns: &[Column],
+    record: &csv::StringRecord,
+    previous: Option<&csv::StringRecord>,
+) -> Result<(), RawError> {
+    if record.len() != columns.len() {
+        let found = format!("{} fields where there are {} columns", record.len(), columns.len());
+        return Err(RawError::new("", Fault::MalformedRow { found }));
+    }
+    for (column, field) in columns.iter().zip(record) {
+        column.check(field).map_err(|fault| RawError::new("", fault).in_column(&column.name))?;
+    }
+    let Some(previous) = previous else { return Ok(()) };
+    let mut keys = columns.iter().zip(previous).zip(record).filter(|((column, _), _)| column.key).peekable();
+    while let Some(((column, before), now)) = keys.next() {
+        let grows = match column.content {
+            Content::Text => before != now,
+            Content::Number { .. } => matches!((before.parse::<f64>(), now.parse::<f64>()), (Ok(a), Ok(b)) if a < b),
+        };
+        if grows {
+            return Ok(());
+        }
+        let same = match column.content {
+            Content::Text => true,
+            Content::Number { .. } => before.parse::<f64>().ok() == now.parse::<f64>().ok(),
+        };
+        if !same || keys.peek().is_none() {
+            let fault = Fault::NotIncreasing { previous: before.into(), found: now.into() };
+            return Err(RawError::new("", fault).in_column(&column.name));
+        }
+    }
+    Ok(())
+}
+
+impl Column {
+    fn check(&self, field: &str) -> Result<(), Fault> {
+        let Content::Number { low, high, optional } = self.content else { return Ok(()) };
+        if field.is_empty() && optional {
+            return Ok(());
+        }
+        let value: f64 = field.parse().map_err(|_| Fault::NotANumber { found: field.into() })?;
+        if !value.is_finite() {
+            return Err(Fault::NotFinite { found: field.into() });
+        }
+        if value < low || value > high {
+            return Err(Fault::OutOfRange { low, high, unit: self.unit.into(), found: field.into() });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+#[path = "source_tests.rs"]
+mod tests;
