@@ -11,7 +11,7 @@ pub struct RawError {
     /// Column, where the fault belongs to one.
     pub column: Option<String>,
     /// What is wrong.
-    pub fault: Fault,
+    pub fault: Box<Fault>,
 }
 
 /// The kinds of fault in an input file.
@@ -73,7 +73,7 @@ pub enum Fault {
         found: String,
     },
     /// A number outside what is physically sensible.
-    #[error("expected {low} to {high} {unit}, found {found}")]
+    #[error("expected {low} to {high}{}, found {found}", suffix(unit))]
     OutOfRange {
         /// Lowest value allowed.
         low: f64,
@@ -115,7 +115,7 @@ pub enum Fault {
 
 impl RawError {
     pub(crate) fn new(file: &str, fault: Fault) -> Self {
-        Self { file: file.into(), line: None, column: None, fault }
+        Self { file: file.into(), line: None, column: None, fault: Box::new(fault) }
     }
 
     pub(crate) fn in_file(self, file: &str) -> Self {
@@ -140,4 +140,9 @@ impl RawError {
         }
         format!("{text}: {}", self.fault)
     }
+}
+
+/// The unit after a space; nothing for a number without unit.
+fn suffix(unit: &str) -> String {
+    if unit == "1" { String::new() } else { format!(" {unit}") }
 }

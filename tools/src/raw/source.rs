@@ -162,10 +162,8 @@ impl<'a> Header<'a> {
 
 fn parse_rows<R: Row>(file: &str, text: &str, header: &Header) -> Result<Vec<R>, RawError> {
     let columns = R::columns();
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .from_reader(&text.as_bytes()[header.length..]);
+    let mut reader =
+        csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(&text.as_bytes()[header.length..]);
     let mut rows = Vec::new();
     let mut previous: Option<csv::StringRecord> = None;
     for (i, record) in reader.records().enumerate() {

@@ -84,21 +84,22 @@ fn each_fault_is_named_with_its_place() {
             "# unit altitude_km: m",
             "folder/file.csv, line 9, column \"altitude_km\": expected the unit \"km\", found \"m\"",
         ),
-        (
-            "# unit albedo: 1\n",
-            "",
-            "folder/file.csv, line 8, column \"albedo\": expected the unit \"1\", found \"\"",
-        ),
+        ("# unit albedo: 1\n", "", "folder/file.csv, line 8, column \"albedo\": expected the unit \"1\", found \"\""),
         ("2.5,\n", "2.5\n", "folder/file.csv, line 11: malformed row: 1 fields where there are 2 columns"),
         ("2.5,\n", "2.5x,\n", "folder/file.csv, line 11, column \"altitude_km\": expected a number, found \"2.5x\""),
         ("2.5,\n", ",\n", "folder/file.csv, line 11, column \"altitude_km\": expected a number, found \"\""),
-        ("2.5,\n", "NaN,\n", "folder/file.csv, line 11, column \"altitude_km\": expected a finite number, found \"NaN\""),
-        ("0,0.5", "0,-0.5", "folder/file.csv, line 10, column \"albedo\": expected 0 to 1 1, found -0.5"),
+        (
+            "2.5,\n",
+            "NaN,\n",
+            "folder/file.csv, line 11, column \"altitude_km\": expected a finite number, found \"NaN\"",
+        ),
+        ("0,0.5", "0,-0.5", "folder/file.csv, line 10, column \"albedo\": expected 0 to 1, found -0.5"),
         (
             "2.5,\n",
             "0.0,\n",
             "folder/file.csv, line 11, column \"altitude_km\": expected more than 0 of the row before, found 0.0",
         ),
+        ("2.5,\n", "2500,\n", "folder/file.csv, line 11, column \"altitude_km\": expected 0 to 120 km, found 2500"),
         ("0,0.5\n2.5,\n", "", "folder/file.csv: expected at least one row, found none"),
         ("altitude_km,albedo\n0,0.5\n2.5,\n", "", "folder/file.csv: expected at least one row, found none"),
     ];
@@ -110,13 +111,13 @@ fn each_fault_is_named_with_its_place() {
 #[test]
 fn bytes_that_are_no_text_are_refused() {
     let error = Source::<Sample>::parse("file.csv", b"# title: \xff\n").expect_err("not UTF-8");
-    assert!(matches!(error.fault, Fault::NotUtf8), "{error}");
+    assert!(matches!(*error.fault, Fault::NotUtf8), "{error}");
 }
 
 #[test]
 fn a_missing_file_is_named() {
     let error = Source::<Sample>::read(Path::new("no-such-folder"), "file.csv").expect_err("missing");
-    assert!(matches!(error.fault, Fault::Unreadable(_)), "{error}");
+    assert!(matches!(*error.fault, Fault::Unreadable(_)), "{error}");
     assert!(error.to_string().starts_with("file.csv: cannot be read"), "{error}");
 }
 

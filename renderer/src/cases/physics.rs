@@ -1,0 +1,257 @@
+//! From a case to something that can be sampled.
+
+use super::input::{Case, Layer, Profile};
+use crate::atmosphere::{Component, Medium};
+use crate::geometry::{Place, Shape};
+use crate::light::SunDisc;
+use crate::phase::Phase;
+use crate::sampling::{Sampler, cosine_hemisphere};
+use crate::transport::{self, Method, Problem};
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use tables::units::{EARTH_RADIUS_M, KM};
+use tables::{Axis, Curve, Interpolation, Outside, Scale};
+
+/// Thickness in m given to a plane-parallel layer: only its optical depth counts.
+const LAYER_M: f64 = 1000.0;
+
+/// A quantity to estimate.
+#[derive(Debug)]
+pub(super) struct Estimand {
+    medium: Medium<1>,
+    shape: Shape,
+    albedo: f64,
+    sun: SunDisc<1>,
+    max_orders: Option<u32>,
+    place: Place,
+    quantity: Quantity,
+    f0: f64,
+}
+
+/// What is asked at the place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Quantity {
+    /// Radiance looked at in a direction.
+    Radiance(DVec3),
+    /// Irradiance of the beam on a level plane.
+    Direct,
+    /// Irradiance from everything but the beam on a level plane that faces up.
+    Diffuse,
+    /// Radiant exitance of the ground.
+    Reflected,
+    /// Irradiance on a level plane at the top that faces down.
+    Upward,
+}
+
+impl Estimand {
+    /// The value where no sampling is needed: the beam, and what a black ground reflects.
+    pub(super) fn exact(&self) -> Option<f64> {
+        match self.quantity {
+            Quantity::Direct => Some(self.direct()),
+            Quantity::Reflected if self.albedo == 0.0 => Some(0.0),
+            _ => None,
+        }
+    }
+
+    /// mu_0 exp(-tau) F_0 at the place.
+    fn direct(&self) -> f64 {
+        let sun = self.sun.direction();
+        let [through] = self.medium.transmittance(self.shape, self.place, sun);
+        self.f0 * self.place.up.dot(sun).max(0.0) * through
+    }
+
+    /// One unbiased estimate. A flux is pi times the mean radiance over directions with
+    /// the density cos(theta)/pi.
+    pub(super) fn sample(&self, method: Method, sampler: &mut Sampler) -> f64 {
+        let flux = |facing: DVec3, sampler: &mut Sampler| {
+            let direction = cosine_hemisphere(facing, sampler.next_2d());
+            PI * self.radiance(method, direction, sampler)
+        };
+        match self.quantity {
+            Quantity::Radiance(direction) => self.radiance(method, direction, sampler),
+            Quantity::Direct => self.direct(),
+            Quantity::Diffuse => flux(self.place.up, sampler),
+            Quantity::Reflected => self.albedo * (self.direct() + flux(self.place.up, sampler)),
+            Quantity::Upward => flux(-self.place.up, sampler),
+        }
+    }
+
+    fn radiance(&self, method: Method, direction: DVec3, sampler: &mut Sampler) -> f64 {
+        let problem = Problem {
+            shape: self.shape,
+            medium: &self.medium,
+            albedo: [self.albedo],
+            sun: Some(&self.sun),
+            environment: None,
+            max_orders: self.max_orders,
+        };
+        let [radiance] = transport::radiance(method, &problem, self.place, direction, sampler);
+        self.f0 * radiance
+    }
+}
+
+/// Makes a case ready, or says in a phrase why it is refused.
+pub(super) fn prepare(case: &Case, profiles: &BTreeMap<String, Profile>) -> Result<Estimand, String> {
+    if !matches!(case.polarization.as_str(), "scalar" | "any") {
+        return Err("polarised transfer is not offered yet: scalar cases only".into());
+    }
+    let max_orders = match case.orders.as_str() {
+        "all" => None,
+        text => Some(text.parse().ok().filter(|&n| n > 0).ok_or_else(|| format!("orders must be \"all\" or a number from 1, not {text:?}"))?),
+    };
+    ranged("sza_deg", case.sza_deg, 0.0, 180.0)?;
+    ranged("albedo", case.albedo, 0.0, 1.0)?;
+    ranged("F0", case.f0, 0.0, f64::MAX)?;
+    let (shape, medium) = match case.geometry.as_str() {
+        "plane-parallel" => {
+            let layers = case.layers.as_ref().ok_or("a plane-parallel case needs layers")?;
+            (Shape::Flat, layered(layers)?)
+        }
+        "spherical" => {
+            let radius_m = case.planet_radius_km.map_or(EARTH_RADIUS_M, |km| km * KM);
+            ranged("planet_radius_km", radius_m / KM, f64::MIN_POSITIVE, 1e9)?;
+            let name = case.profile.as_ref().ok_or("a spherical case needs a profile")?;
+            let profile = profiles.get(name).ok_or_else(|| format!("no profile named {name:?} in the file"))?;
+            (Shape::Sphere { radius_m }, spherical(profile, case.phase.as_deref())?)
+        }
+        other => return Err(format!("geometry {other:?} is neither plane-parallel nor spherical")),
+    };
+    let altitude_m = match (case.observer.as_str(), case.observer_alt_km) {
+        ("top", None) => medium.top_m(),
+        ("ground" | "bottom", None) => 0.0,
+        (_, Some(km)) => km * KM,
+        (other, None) => return Err(format!("observer {other:?} needs observer_alt_km")),
+    };
+    ranged("observer_alt_km", altitude_m / KM, 0.0, 1e9)?;
+    let (sin, cos) = case.sza_deg.to_radians().sin_cos();
+    let quantity = match case.quantity.as_str() {
+        "radiance" => Quantity::Radiance(view(case)?),
+        "flux_down_direct_ground" => Quantity::Direct,
+        "flux_down_diffuse_ground" => Quantity::Diffuse,
+        "flux_up_ground" => Quantity::Reflected,
+        "flux_up_top" => Quantity::Upward,
+        other => return Err(format!("quantity {other:?} is not offered")),
+    };
+    Ok(Estimand {
+        medium,
+        shape,
+        albedo: case.albedo,
+        sun: SunDisc::beam(DVec3::new(sin, 0.0, cos)),
+        max_orders,
+        place: Place::above(altitude_m),
+        quantity,
+        f0: case.f0,
+    })
+}
+
+fn view(case: &Case) -> Result<DVec3, String> {
+    let zenith = case.view_zenith_deg.ok_or("a radiance needs view_zenith_deg")?;
+    let azimuth = case.view_dphi_deg.ok_or("a radiance needs view_dphi_deg")?;
+    ranged("view_zenith_deg", zenith, 0.0, 180.0)?;
+    ranged("view_dphi_deg", azimuth, -360.0, 360.0)?;
+    if case.geometry == "plane-parallel" && zenith == 90.0 {
+        return Err("a level view in plane-parallel layers never ends".into());
+    }
+    let (sin, cos) = zenith.to_radians().sin_cos();
+    let (sin_azimuth, cos_azimuth) = azimuth.to_radians().sin_cos();
+    Ok(DVec3::new(sin * cos_azimuth, sin * sin_azimuth, cos))
+}
+
+fn ranged(name: &str, value: f64, low: f64, high: f64) -> Result<(), String> {
+    if (low..=high).contains(&value) { Ok(()) } else { Err(format!("{name} must be from {low} to {high}, not {value}")) }
+}
+
+/// A phase function of the files: `rayleigh` with the depolarisation rho, gamma = rho / (2 - rho), or
+/// `hg` with g.
+fn phase(kind: &str, parameter: f64) -> Result<Phase<1>, String> {
+    match kind {
+        "rayleigh" => {
+            ranged("depolarisation", parameter, 0.0, 0.9)?;
+            Ok(Phase::Rayleigh { gamma: [parameter / (2.0 - parameter)] })
+        }
+        "hg" => {
+            ranged("g", parameter, -0.9999, 0.9999)?;
+            Ok(Phase::HenyeyGreenstein { g: [parameter] })
+        }
+        other => Err(format!("phase function {other:?} is neither rayleigh nor hg")),
+    }
+}
+
+/// Homogeneous layers, listed from the top down: each phase function of each
+/// layer is a component, present in that layer alone.
+fn layered(layers: &[Layer]) -> Result<Medium<1>, String> {
+    let count = layers.len();
+    if count == 0 {
+        return Err("no layers".into());
+    }
+    let top = count as f64 * LAYER_M;
+    let mut components = Vec::new();
+    for (from_top, layer) in layers.iter().enumerate() {
+        ranged("tau", layer.tau, 0.0, 1e6)?;
+        ranged("ssa", layer.ssa, 0.0, 1.0)?;
+        let weights: f64 = layer.phase.iter().map(|(weight, ..)| weight).sum();
+        if layer.phase.iter().any(|(weight, ..)| *weight < 0.0) || (weights - 1.0).abs() > 1e-6 {
+            return Err(format!("the weights of a layer's phase functions must add up to 1, not {weights}"));
+        }
+        let bottom = (count - 1 - from_top) as f64 * LAYER_M;
+        let density = slab(bottom, bottom + LAYER_M)?;
+        for (weight, kind, parameter) in &layer.phase {
+            let share = weight / weights * layer.tau / LAYER_M;
+            components.push(Component {
+                density: density.clone(),
+                scattering: [share * layer.ssa],
+                absorption: [share * (1.0 - layer.ssa)],
+                phase: phase(kind, *parameter)?,
+            });
+        }
+    }
+    Medium::new(components, top).map_err(|e| e.to_string())
+}
+
+/// 1 between two altitudes in m and 0 elsewhere.
+fn slab(bottom: f64, top: f64) -> Result<Curve, String> {
+    let axis = Axis::new("altitude", "m", vec![bottom, top]).map_err(|e| e.to_string())?;
+    let axis = axis.between(Interpolation::Step).beyond(Outside::Zero);
+    Curve::new(axis, Scale::Linear, vec![1.0, 1.0]).map_err(|e| e.to_string())
+}
+
+/// A piecewise linear profile, with one mixture of phase functions for all of it or
+/// components that have their own.
+fn spherical(profile: &Profile, phases: Option<&[(f64, String, f64)]>) -> Result<Medium<1>, String> {
+    let axis = Axis::new("altitude", "m", profile.z_km.iter().map(|z| z * KM).collect()).map_err(|e| e.to_string())?;
+    let axis = axis.beyond(Outside::Zero);
+    let top = axis.range().1;
+    let curve = |per_km: &[f64], share: f64| -> Result<Curve, String> {
+        if per_km.iter().any(|&v| v < 0.0) {
+            return Err("a coefficient of the profile is negative".into());
+        }
+        Curve::new(axis.clone(), Scale::Linear, per_km.iter().map(|v| share * v / KM).collect()).map_err(|e| e.to_string())
+    };
+    let mut components = Vec::new();
+    let mut add = |per_km: &[f64], share: f64, scattering: f64, phase: Phase<1>| -> Result<(), String> {
+        if per_km.iter().any(|&v| v != 0.0) {
+            components.push(Component { density: curve(per_km, share)?, scattering: [scattering], absorption: [1.0 - scattering], phase });
+        }
+        Ok(())
+    };
+    let none = Phase::Rayleigh { gamma: [0.0] };
+    if let Some(parts) = &profile.components {
+        for part in parts.all() {
+            if part.scattering_per_km.iter().any(|&v| v != 0.0) {
+                add(&part.scattering_per_km, 1.0, 1.0, phase(&part.phase.0, part.phase.1)?)?;
+            }
+            add(&part.absorption_per_km, 1.0, 0.0, none.clone())?;
+        }
+    } else {
+        let scattering = profile.scattering_per_km.as_ref().ok_or("the profile has neither scattering_per_km nor components")?;
+        for (weight, kind, parameter) in phases.ok_or("a case with a plain profile needs a phase")? {
+            ranged("weight of a phase function", *weight, 0.0, 1.0)?;
+            add(scattering, *weight, 1.0, phase(kind, *parameter)?)?;
+        }
+        if let Some(absorption) = &profile.absorption_per_km {
+            add(absorption, 1.0, 0.0, none)?;
+        }
+    }
+    Medium::new(components, top).map_err(|e| e.to_string())
+}

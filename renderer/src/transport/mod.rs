@@ -1,0 +1,76 @@
+//! Radiance along a ray: methods behind one interface, from exact and slow to
+//! cheaper.
+//!
+//! Everything here is per unit solar irradiance, so a radiance is in sr^-1, and
+//! carries `L` wavelengths at once. A path is drawn for one of them, the hero,
+//! chosen at random; along the path f_j is the measurement contribution of
+//! wavelength j over the density p_h of the path for the hero, and r_j = p_j / p_h
+//! that path's density for wavelength j as hero. The estimate
+//! f_j / mean_k(r_k)
+//! is then the balance heuristic over all choices of the hero (Wilkie et al. 2014;
+//! Miller, Georgiev & Jarosz 2019): unbiased at every wavelength, and finite
+//! wherever some wavelength would have drawn the path.
+
+mod flight;
+mod path;
+mod ratio;
+
+use crate::atmosphere::Medium;
+use crate::geometry::{Place, Shape};
+use crate::light::SunDisc;
+use crate::sampling::Sampler;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// How the radiance is estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// The brute-force judge: analog free flights by delta tracking. Unbiased,
+    /// with nothing clever in it; slow where the air is thin.
+    Judge,
+    /// Paths that are made to collide on every ray: one tentative collision
+    /// by inverting the majorants' optical depth, weighted by a ratio-tracked
+    /// transmittance. Unbiased, and far less noisy where the air is thin.
+    Paths,
+}
+
+/// What light travels through.
+#[derive(Debug)]
+pub struct Problem<'a, const L: usize> {
+    /// Form of the planet.
+    pub shape: Shape,
+    /// The atmosphere.
+    pub medium: &'a Medium<L>,
+    /// Lambertian albedo of the ground, 0 to 1.
+    pub albedo: [f64; L],
+    /// The sun, above the atmosphere, in the frame of the observer; `None` for none.
+    pub sun: Option<&'a SunDisc<L>>,
+    /// Radiance that enters from every direction of space, per unit solar
+    /// irradiance (sr^-1); `None` for black space.
+    pub environment: Option<[f64; L]>,
+    /// The largest number of scatterings and reflections of a path, `None` for
+    /// all. 1 is single scattering and light reflected by the ground straight to the eye.
+    pub max_orders: Option<u32>,
+}
+
+/// One unbiased estimate of the radiance per unit solar irradiance (sr^-1) that arrives at
+/// `from` out of the unit `direction` (the direction looked in), without the
+/// solar disc itself. Equal streams give equal estimates.
+#[must_use]
+pub fn radiance<const L: usize>(
+    method: Method,
+    problem: &Problem<'_, L>,
+    from: Place,
+    direction: DVec3,
+    sampler: &mut Sampler,
+) -> [f64; L] {
+    let hero = ((sampler.next() * L as f64) as usize).min(L - 1);
+    match method {
+        Method::Judge => path::trace(problem, from, direction, hero, sampler, flight::delta),
+        Method::Paths => path::trace(problem, from, direction, hero, sampler, flight::forced),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,179 @@
+//! What is written to `data/`: one function per kind of table, and the run that makes them all.
+//!
+//! The same inputs give the same bytes: nothing of the clock, the machine or the order of threads
+//! enters a table. Every table is read back through the `tables` crate before it is reported.
+
+mod air;
+mod check;
+mod ground;
+mod light;
+mod ozone;
+
+pub use check::{CheckReport, Difference, TableCheck, check};
+
+use crate::raw::{RawData, RawError};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use tables::{Axis, Field, Kind, Precision, Scale, Table, TableError, Tolerance, views};
+
+/// Why tables could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum BuildError {
+    /// An input cannot be taken.
+    #[error("raw data {0}")]
+    Raw(#[from] RawError),
+    /// A table cannot be computed, written or read back.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// The folder of the tables cannot be made or listed.
+    #[error("{}: {source}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file holds something else than what was written to it.
+    #[error("{}: read back other than written: {difference}", path.display())]
+    ReadBack {
+        /// The file.
+        path: PathBuf,
+        /// The first difference.
+        difference: Box<Difference>,
+    },
+}
+
+/// A table that was written and read back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Built {
+    /// Which one.
+    pub kind: Kind,
+    /// Size of the file.
+    pub bytes: u64,
+    /// Time to compute, write and read back.
+    pub time: Duration,
+}
+
+/// Makes every table of `data_dir` from `raw_dir`, in parallel, and calls `progress` as each is
+/// finished. A file is replaced in one step: a run that fails leaves each table either new or as it
+/// was. The result is in the order of [`Kind::ALL`].
+///
+/// # Errors
+/// [`BuildError`], of the first table in that order that failed.
+pub fn build(raw_dir: &Path, data_dir: &Path, progress: impl Fn(&Built) + Sync) -> Result<Vec<Built>, BuildError> {
+    let raw = RawData::from_dir(raw_dir)?;
+    std::fs::create_dir_all(data_dir).map_err(|source| BuildError::Folder { path: data_dir.into(), source })?;
+    let results: Vec<Result<Built, BuildError>> = Kind::ALL
+        .par_iter()
+        .map(|&kind| {
+            let built = build_one(&raw, data_dir, kind)?;
+            progress(&built);
+            Ok(built)
+        })
+        .collect();
+    results.into_iter().collect()
+}
+
+fn build_one(raw: &RawData, data_dir: &Path, kind: Kind) -> Result<Built, BuildError> {
+    let start = Instant::now();
+    let path = data_dir.join(kind.file_name());
+    let table = table(raw, kind)?;
+    let bytes = tables::file::write(&path, &table)?;
+    let back = tables::file::read(&path)?;
+    accept(&back).map_err(|e| e.at(&path))?;
+    match check::differences(&table, &back).into_iter().next() {
+        None => Ok(Built { kind, bytes, time: start.elapsed() }),
+        Some(difference) => Err(BuildError::ReadBack { path, difference: Box::new(difference) }),
+    }
+}
+
+/// The table of a kind, computed from the inputs.
+///
+/// # Errors
+/// [`TableError`] if the inputs make no valid table of that kind.
+pub fn table(raw: &RawData, kind: Kind) -> Result<Table, TableError> {
+    match kind {
+        Kind::StandardAtmosphere => air::standard_atmosphere(raw),
+        Kind::Rayleigh => air::rayleigh(raw),
+        Kind::OzoneCrossSection => ozone::cross_section(raw),
+        Kind::OzoneProfiles => ozone::profiles(raw),
+        Kind::OzoneLayers => ozone::layers(raw),
+        Kind::Sun => light::sun(raw),
+        Kind::Observer => light::observer(raw),
+        Kind::GroundAlbedo => ground::albedo(raw),
+    }
+}
+
+/// Reads a table through the typed view of its kind, as the renderer will.
+fn accept(table: &Table) -> Result<(), TableError> {
+    match table.kind {
+        Kind::StandardAtmosphere => views::StandardAtmosphere::from_table(table).map(drop),
+        Kind::Rayleigh => views::Rayleigh::from_table(table).map(drop),
+        Kind::OzoneCrossSection => views::OzoneCrossSection::from_table(table).map(drop),
+        Kind::OzoneProfiles => views::OzoneProfiles::from_table(table).map(drop),
+        Kind::OzoneLayers => views::OzoneLayers::from_table(table).map(drop),
+        Kind::Sun => views::Sun::from_table(table).map(drop),
+        Kind::Observer => views::Observer::from_table(table).map(drop),
+        Kind::GroundAlbedo => views::GroundAlbedo::from_table(table).map(drop),
+    }
+}
+
+/// Single precision where its rounding, 6e-8, is a hundred times below the error that the values
+/// have anyway (of interpolation, or of the data), else double.
+fn precision(relative_error: f64) -> Precision {
+    if relative_error > 6e-6 { Precision::F32 } else { Precision::F64 }
+}
+
+/// A field over named axes, linear between nodes, stored for values with the given relative error.
+fn field(name: &str, unit: &str, axes: &[&str], relative_error: f64, values: Vec<f64>) -> Field {
+    let precision = precision(relative_error);
+    // Storage rounds by half of this; and exp, ln and powf differ between machines by a few 1e-16,
+    // which sums and powers raise to some 1e-13.
+    let relative = match precision {
+        Precision::F32 => f64::from(f32::EPSILON),
+        Precision::F64 => 1e-12,
+    };
+    Field {
+        name: name.into(),
+        unit: unit.into(),
+        axes: axes.iter().map(|&axis| axis.into()).collect(),
+        precision,
+        scale: Scale::Linear,
+        tolerance: Tolerance { relative, absolute: 0.0 },
+        interpolation_error: None,
+        values,
+    }
+}
+
+/// The months 1 to 12; nothing between.
+fn months() -> Result<Axis, TableError> {
+    Ok(Axis::uniform(views::MONTH.0, views::MONTH.1, 1.0, 1.0, 12)?.between(tables::Interpolation::Node))
+}
+
+/// Two significant digits, so that the last bits of a machine do not show in a header.
+fn two_digits(x: f64) -> f64 {
+    format!("{x:.1e}").parse().unwrap_or(x)
+}
+
+/// Largest |a / b - 1| of (a, b), to two digits.
+fn largest_relative(pairs: impl IntoIterator<Item = (f64, f64)>) -> f64 {
+    two_digits(pairs.into_iter().map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn single_precision_is_for_values_that_are_not_known_better() {
+        assert_eq!(precision(1e-3), Precision::F32);
+        assert_eq!(precision(1e-7), Precision::F64);
+    }
+
+    #[test]
+    fn numbers_of_a_header_keep_two_digits() {
+        assert_eq!(two_digits(2.284e-5), 2.3e-5);
+        assert_eq!(two_digits(0.0), 0.0);
+    }
+}

@@ -1,0 +1,158 @@
+//! The command line. Results go to standard output, progress and errors to standard error.
+
+use clap::{Args, Parser, Subcommand};
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+use tables::Kind;
+use tools::build::{self, Built, CheckReport};
+use tools::inspect;
+
+/// Makes, checks and shows the tables that Airlight's renderer reads.
+#[derive(Parser)]
+#[command(name = "airlight-tools", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Make every table from the raw data, or check that the tables are what the raw data make
+    Build(BuildArgs),
+    /// Show what a table holds: settings, axes, fields with their ranges, and where it came from
+    Inspect {
+        /// A table, such as data/rayleigh.table
+        file: PathBuf,
+    },
+}
+
+#[derive(Args)]
+struct BuildArgs {
+    /// Folder of the measured inputs
+    #[arg(long, value_name = "DIR", default_value = "raw-data")]
+    raw_data: PathBuf,
+    /// Folder of the tables; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    data: PathBuf,
+    /// Write nothing: rebuild in memory, compare value by value, and fail if anything differs
+    #[arg(long)]
+    check: bool,
+    /// Say nothing but errors
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Parses the arguments and does what they say: 0 on success, 1 with one sentence on failure, 2 for
+/// arguments that make no sense.
+pub(crate) fn run() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Build(args) if args.check => check_tables(&args),
+        Command::Build(args) => build_tables(&args),
+        Command::Inspect { file } => show(&file),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(sentence) => {
+            say(&format!("error: {sentence}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// A line on standard error. That nobody reads it is no reason to fail.
+fn say(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+/// The path of a table, padded so that what follows stands in columns.
+fn padded(args: &BuildArgs, name: &str) -> String {
+    let path = |name: &str| args.data.join(name).display().to_string();
+    let width = Kind::ALL.iter().map(|kind| path(&kind.file_name()).chars().count()).max().unwrap_or(0);
+    format!("{:width$}", path(name))
+}
+
+fn build_tables(args: &BuildArgs) -> Result<(), String> {
+    let start = Instant::now();
+    let progress = |built: &Built| {
+        if !args.quiet {
+            let path = padded(args, &built.kind.file_name());
+            say(&format!("{path}  {:>9}  {}", size(built.bytes), seconds(built.time)));
+        }
+    };
+    let built = build::build(&args.raw_data, &args.data, progress).map_err(|e| e.to_string())?;
+    if !args.quiet {
+        let total = built.iter().map(|table| table.bytes).sum();
+        say(&format!("{} tables, {} in {}", built.len(), size(total), seconds(start.elapsed())));
+    }
+    Ok(())
+}
+
+fn check_tables(args: &BuildArgs) -> Result<(), String> {
+    let start = Instant::now();
+    let report = build::check(&args.raw_data, &args.data).map_err(|e| e.to_string())?;
+    if !args.quiet {
+        for table in &report.tables {
+            let path = padded(args, &table.kind.file_name());
+            let verdict = if table.differences.is_empty() { "as rebuilt" } else { "differs" };
+            say(&format!("{path}  {verdict:<10}  largest relative deviation {:.1e}", table.largest_relative));
+            for difference in &table.differences {
+                say(&format!("    {difference}"));
+            }
+        }
+        for name in &report.foreign {
+            say(&format!("{}  foreign     no build writes this file", padded(args, name)));
+        }
+        say(&format!("{} tables checked in {}", report.tables.len(), seconds(start.elapsed())));
+    }
+    if report.is_clean() { Ok(()) } else { Err(verdict(args, &report)) }
+}
+
+/// One sentence on a check that failed.
+fn verdict(args: &BuildArgs, report: &CheckReport) -> String {
+    let bad: Vec<String> =
+        report.tables.iter().filter(|t| !t.differences.is_empty()).map(|t| t.kind.file_name()).collect();
+    let mut parts = Vec::new();
+    if !bad.is_empty() {
+        parts.push(format!("{} not what {} makes", bad.join(", "), args.raw_data.display()));
+    }
+    if !report.foreign.is_empty() {
+        parts.push(format!("{} written by no build", report.foreign.join(", ")));
+    }
+    format!("{}: {}", args.data.display(), parts.join("; "))
+}
+
+fn show(file: &std::path::Path) -> Result<(), String> {
+    let table = tables::file::read(file).map_err(|e| e.to_string())?;
+    match std::io::stdout().lock().write_all(inspect::describe(&table).as_bytes()) {
+        // A reader that has seen enough, such as `head`.
+        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        other => other.map_err(|e| format!("standard output: {e}")),
+    }
+}
+
+fn size(bytes: u64) -> String {
+    format!("{:.1} kB", bytes as f64 / 1e3)
+}
+
+fn seconds(time: Duration) -> String {
+    format!("{:.2} s", time.as_secs_f64())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_and_times_are_short() {
+        assert_eq!(size(123_456), "123.5 kB");
+        assert_eq!(seconds(Duration::from_millis(1234)), "1.23 s");
+    }
+}

@@ -1,0 +1,4 @@
+//! What there is of each substance at each altitude.
+
+pub mod ozone;
+pub mod standard_atmosphere;
