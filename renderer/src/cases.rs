@@ -122,6 +122,9 @@ const DARK_PATHS: u64 = 1 << 20;
 /// comes out too large, the run is lengthened by what its own variance asks for.
 fn estimate(id: &str, estimand: &Estimand, settings: &Settings, index: u64) -> Result<Answer, String> {
     if let Some(value) = estimand.exact() {
+        if value == 0.0 && matches!(settings.effort, Effort::Error(_)) {
+            return Err("zero exactly (no light, or a black ground): it has no relative error".into());
+        }
         return Ok(Answer { id: id.into(), value, stderr: 0.0, paths: 0 });
     }
     let extend = |moments: &mut Moments, seed: u64, to: u64| {

@@ -1,1 +1,19 @@
 //! Renders the sky of a spherical planet from Airlight's optical tables.
+
+pub mod atmosphere;
+pub mod camera;
+pub mod cases;
+pub mod cli;
+pub mod data;
+pub mod film;
+pub mod geometry;
+pub mod light;
+pub mod phase;
+pub mod render;
+pub mod sampling;
+pub mod scene;
+pub mod spectrum;
+pub mod transport;
+
+#[cfg(test)]
+mod test_data;

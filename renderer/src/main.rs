@@ -1,3 +1,7 @@
 //! The command `airlight`.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    renderer::cli::main()
+}

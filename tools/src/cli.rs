@@ -1,5 +1,9 @@
 //! The command line. Results go to standard output, progress and errors to standard error.
 
+#[cfg(any(feature = "plot", feature = "study"))]
+mod figures;
+mod mie;
+
 use clap::{Args, Parser, Subcommand};
 use std::io::Write;
 use std::path::PathBuf;
@@ -26,6 +30,11 @@ enum Command {
         /// A table, such as data/rayleigh.table
         file: PathBuf,
     },
+    /// Scatter light by spheres: efficiencies and amplitudes of every line of a CSV file
+    Mie(mie::MieArgs),
+    /// Draw what the tables hold: SVG, PNG and CSV of each figure
+    #[cfg(feature = "plot")]
+    Plot(figures::PlotArgs),
 }
 
 #[derive(Args)]
@@ -51,6 +60,9 @@ pub(crate) fn run() -> ExitCode {
         Command::Build(args) if args.check => check_tables(&args),
         Command::Build(args) => build_tables(&args),
         Command::Inspect { file } => show(&file),
+        Command::Mie(args) => mie::solve(&args),
+        #[cfg(feature = "plot")]
+        Command::Plot(args) => figures::draw(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -61,7 +61,7 @@ impl<const L: usize> Carried<L> {
 /// After the first vertex a path lives on with this probability times its
 /// weight over the weight at the first vertex, at most 1. The figure balances
 /// the variance of the later orders against their cost.
-const SURVIVAL: f64 = 2.0;
+const SURVIVAL: f64 = 4.0;
 
 /// Radiance along one path whose flights `fly` draws.
 pub(super) fn trace<const L: usize>(
@@ -93,7 +93,10 @@ pub(super) fn trace<const L: usize>(
                     let phase = mixture(medium, &local, direction.dot(sun));
                     carried.score(&mut sum, |j| phase[j] * light[j]);
                 }
-                direction = scatter(medium, &local, hero, direction, &mut carried, sampler);
+                match scatter(medium, &local, hero, direction, &mut carried, sampler) {
+                    Some(scattered) => direction = scattered,
+                    None => break,
+                }
             }
             Outcome::Ground(t) => {
                 place = place.advance(problem.shape, direction, t);
@@ -172,7 +175,8 @@ fn scatterers<'a, const L: usize>(
 /// Draws the direction after a scattering: a species by the hero's
 /// coefficients, an angle by its phase function. The density of the direction
 /// is the hero's mixture, which is its phase function too; other wavelengths
-/// get the ratio of theirs to it, in contribution and density alike.
+/// get the ratio of theirs to it, in contribution and density alike. `None` where
+/// rounding has drawn an angle of no density.
 fn scatter<const L: usize>(
     medium: &Medium<L>,
     local: &Local<L>,
@@ -180,7 +184,7 @@ fn scatter<const L: usize>(
     direction: DVec3,
     carried: &mut Carried<L>,
     sampler: &mut Sampler,
-) -> DVec3 {
+) -> Option<DVec3> {
     let mut choice = sampler.next() * local.scattering[hero];
     let [u, turn] = sampler.next_2d();
     let mut chosen = None;
@@ -191,9 +195,11 @@ fn scatter<const L: usize>(
             break;
         }
     }
-    let Some(component) = chosen else { return direction };
-    let sample = component.phase.sample(hero, u);
+    let sample = chosen?.phase.sample(hero, u);
     let phase = mixture(medium, local, sample.cosine);
+    if phase[hero] <= 0.0 {
+        return None;
+    }
     carried.multiply_both(|j| phase[j] / phase[hero]);
-    around(direction, sample.cosine, turn)
+    Some(around(direction, sample.cosine, turn))
 }

@@ -232,6 +232,7 @@ fn wavelengths_carried_together_equal_wavelengths_alone() {
                     phase: match &c.phase {
                         Phase::Rayleigh { gamma } => Phase::Rayleigh { gamma: [gamma[lane]] },
                         Phase::HenyeyGreenstein { g } => Phase::HenyeyGreenstein { g: [g[lane]] },
+                        Phase::Tabulated(_) => unreachable!("not in this mixture"),
                     },
                 })
                 .collect();

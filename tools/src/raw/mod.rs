@@ -6,6 +6,9 @@
 mod error;
 mod source;
 
+pub mod aerosol_gavin;
+pub mod aerosol_jaenicke;
+pub mod aerosol_opac;
 pub mod bucholtz;
 pub mod cie_1931;
 pub mod ground_albedo;
@@ -39,6 +42,12 @@ pub struct RawData {
     pub cie_1931: cie_1931::Cie1931,
     /// Spectral albedo of grounds.
     pub ground_albedo: ground_albedo::GroundAlbedo,
+    /// Aerosol components and types.
+    pub aerosol_opac: aerosol_opac::AerosolOpac,
+    /// Aerosol size distributions of the thesis.
+    pub aerosol_jaenicke: aerosol_jaenicke::AerosolJaenicke,
+    /// Aerosols of the thesis, to compare with.
+    pub aerosol_gavin: aerosol_gavin::AerosolGavin,
 }
 
 impl RawData {
@@ -56,6 +65,9 @@ impl RawData {
             sun: sun::Sun::from_dir(raw_dir)?,
             cie_1931: cie_1931::Cie1931::from_dir(raw_dir)?,
             ground_albedo: ground_albedo::GroundAlbedo::from_dir(raw_dir)?,
+            aerosol_opac: aerosol_opac::AerosolOpac::from_dir(raw_dir)?,
+            aerosol_jaenicke: aerosol_jaenicke::AerosolJaenicke::from_dir(raw_dir)?,
+            aerosol_gavin: aerosol_gavin::AerosolGavin::from_dir(raw_dir)?,
         })
     }
 }

@@ -1,0 +1,356 @@
+//! Flags, and how they change a scene.
+
+use crate::atmosphere::OzoneSource;
+use crate::cases::Tier;
+use crate::scene::{Albedo, Biome, CameraKind, Scene, SceneError};
+use crate::spectrum::Wavelengths;
+use crate::transport::Method;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Flags of `airlight render`.
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub(super) struct RenderArgs {
+    /// Scene to start from: JSON, or the EXR file of a picture, which carries it; flags override it
+    #[arg(value_name = "SCENE")]
+    pub scene: Option<PathBuf>,
+    /// EXR file to write; the PNG has the same name
+    #[arg(short, long, value_name = "FILE", default_value = "sky.exr", help_heading = "Files")]
+    pub output: PathBuf,
+    /// Folder of the tables
+    #[arg(long, value_name = "DIR", default_value = "data", help_heading = "Files")]
+    pub data: PathBuf,
+    /// Write the spectral channels too (S0.550,000nm in W m^-2 sr^-1 nm^-1)
+    #[arg(long, help_heading = "Files")]
+    pub spectral: bool,
+    /// Exposure of the PNG, EV at ISO 100, -30 to 30: 1.2 * 2^EV cd/m^2 is white [default: the mean
+    /// logarithm of the luminance becomes 22 % of white]
+    #[arg(long, value_name = "EV", help_heading = "Files")]
+    pub exposure: Option<f64>,
+    /// Say nothing but errors
+    #[arg(long, help_heading = "Files")]
+    pub quiet: bool,
+
+    /// Estimator: paths made to collide on every ray, or the brute-force judge [default: paths]
+    #[arg(long, value_name = "METHOD", help_heading = "Sampling")]
+    pub method: Option<MethodName>,
+    /// Samples per pixel, 1 to 1000000; with --error the most of them [default: 64]
+    #[arg(long, value_name = "N", help_heading = "Sampling")]
+    pub spp: Option<u32>,
+    /// Go on until sqrt(mean squared standard error) over mean radiance, the solar disc left
+    /// out, is at most this, 1e-5 to 1: 1% or 0.01
+    #[arg(long, value_name = "E", value_parser = share, help_heading = "Sampling")]
+    pub error: Option<f64>,
+    /// Seed of the random numbers, 0 to 2^64 - 1 [default: 0]
+    #[arg(long, value_name = "S", help_heading = "Sampling")]
+    pub seed: Option<u64>,
+    /// Threads, 1 to 1024; the picture does not depend on it [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Sampling")]
+    pub threads: Option<u16>,
+    /// Wavelengths: how many from 380 to 780 nm, 1 to 1000, or a list in nm, 300 to 1000,
+    /// increasing (450,550,650; a single one as 550.0) [default: 16]
+    #[arg(long, value_name = "N|LIST", help_heading = "Sampling")]
+    pub wavelengths: Option<Wavelengths>,
+    /// Print one sample of this pixel (from the upper left, 0,0) instead of a picture
+    #[arg(long, value_name = "X,Y", value_parser = pixel, help_heading = "Sampling")]
+    pub pixel: Option<(u32, u32)>,
+    /// Which sample --pixel prints
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "pixel", help_heading = "Sampling")]
+    pub sample: u32,
+
+    /// Width in pixels, 1 to 16384 [default: 256; latlong 512]
+    #[arg(long, value_name = "W", help_heading = "Camera")]
+    pub width: Option<u32>,
+    /// Height in pixels, 1 to 16384 [default: 256]
+    #[arg(long, value_name = "H", help_heading = "Camera")]
+    pub height: Option<u32>,
+    /// Projection [default: fisheye]
+    #[arg(long, help_heading = "Camera")]
+    pub camera: Option<CameraKind>,
+    /// Field of view in degrees: of the fisheye's circle, 1 to 360 [default: 180], or of the
+    /// pinhole's width, 0.01 to 179 [default: 60]
+    #[arg(long, value_name = "DEG", help_heading = "Camera")]
+    pub fov: Option<f64>,
+    /// Azimuth of the view in degrees clockwise from north, -360 to 360; on top of a picture that
+    /// looks straight up or down [default: the sun's; there 0, north]
+    #[arg(long, value_name = "DEG", help_heading = "Camera")]
+    pub view_azimuth: Option<f64>,
+    /// Elevation of the view in degrees, -90 to 90 [default: fisheye 90, pinhole 0; from above the
+    /// atmosphere fisheye -90, pinhole the ground's horizon]
+    #[arg(long, value_name = "DEG", help_heading = "Camera")]
+    pub view_elevation: Option<f64>,
+    /// Altitude of the observer in km above the ground, 0 to 1000000 [default: 0.002]
+    #[arg(long, value_name = "KM", help_heading = "Camera")]
+    pub altitude: Option<f64>,
+
+    /// True elevation of the sun in degrees, -90 to 90 [default: 30]
+    #[arg(long, value_name = "DEG", help_heading = "Sun, air and ground")]
+    pub sun_elevation: Option<f64>,
+    /// Azimuth of the sun in degrees clockwise from north, -360 to 360 [default: 180]
+    #[arg(long, value_name = "DEG", help_heading = "Sun, air and ground")]
+    pub sun_azimuth: Option<f64>,
+    /// Whether the disc itself is drawn; it gives light either way [default: on]
+    #[arg(long, help_heading = "Sun, air and ground")]
+    pub sun_disc: Option<Switch>,
+    /// Top of the atmosphere in km, 1 to 120 [default: 120]
+    #[arg(long, value_name = "KM", help_heading = "Sun, air and ground")]
+    pub top: Option<f64>,
+    /// Month, 1 to 12, which ozone goes by [default: 6]
+    #[arg(long, value_name = "1..12", help_heading = "Sun, air and ground")]
+    pub month: Option<u8>,
+    /// Latitude in degrees, north positive, -90 to 90, which ozone goes by [default: 45]
+    #[arg(long, value_name = "DEG", help_heading = "Sun, air and ground")]
+    pub latitude: Option<f64>,
+    /// Ozone column in Dobson units, 0 to 1000 [default: that of the month and latitude]
+    #[arg(long, value_name = "DU", help_heading = "Sun, air and ground")]
+    pub ozone: Option<f64>,
+    /// Ozone profile: ml (McPeters-Labow, by month and latitude) or arosa (by month) [default: ml]
+    #[arg(long, value_name = "SOURCE", help_heading = "Sun, air and ground")]
+    pub ozone_source: Option<OzoneName>,
+    /// Reflectance of the ground: 0 to 1, or dry-soil, wet-soil, ocean [default: 0.1]
+    #[arg(long, value_name = "X|NAME", help_heading = "Sun, air and ground")]
+    pub albedo: Option<Albedo>,
+
+    #[command(flatten)]
+    pub aerosol: AerosolArgs,
+}
+
+/// Aerosols: their names are kept, and anything but none is refused by this version.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Aerosols (this version renders none)")]
+pub(super) struct AerosolArgs {
+    /// Kind of aerosol [default: none]
+    #[arg(long, value_name = "NAME")]
+    pub biome: Option<Biome>,
+    /// Where its optics come from
+    #[arg(long)]
+    pub aerosol_source: Option<AerosolSource>,
+    /// Relative humidity in percent
+    #[arg(long, value_name = "PERCENT")]
+    pub humidity: Option<f64>,
+    /// Optical depth at 550 nm
+    #[arg(long, value_name = "X", conflicts_with_all = ["visibility", "turbidity"])]
+    pub aod: Option<f64>,
+    /// Visibility in km
+    #[arg(long, value_name = "KM", conflicts_with = "turbidity")]
+    pub visibility: Option<f64>,
+    /// Turbidity
+    #[arg(long, value_name = "X")]
+    pub turbidity: Option<f64>,
+}
+
+/// Flags of `airlight radiance`.
+#[derive(Debug, Args)]
+pub(super) struct RadianceArgs {
+    /// Cases: JSON
+    #[arg(value_name = "CASES.json")]
+    pub cases: PathBuf,
+    /// Answers to write: CSV with id,value,stderr
+    #[arg(short, long, value_name = "ANSWERS.csv")]
+    pub output: PathBuf,
+    /// Which cases
+    #[arg(long, default_value = "core")]
+    pub tier: TierName,
+    /// Estimator: paths made to collide on every ray, or the brute-force judge
+    #[arg(long, value_name = "METHOD", default_value = "paths")]
+    pub method: MethodName,
+    /// Standard error of each case relative to its value, 1e-5 to 1: 1% or 0.01 [default: 1%]
+    #[arg(long, value_name = "E", value_parser = share, conflicts_with = "spp")]
+    pub error: Option<f64>,
+    /// Paths for each case instead, 2 or more
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..))]
+    pub spp: Option<u64>,
+    /// Seed of the random numbers, 0 to 2^64 - 1
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub seed: u64,
+    /// Threads, 1 to 1024; the answers do not depend on it [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Say nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum MethodName {
+    Judge,
+    Paths,
+}
+
+impl From<MethodName> for Method {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Judge => Self::Judge,
+            MethodName::Paths => Self::Paths,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum TierName {
+    Core,
+    Full,
+}
+
+impl From<TierName> for Tier {
+    fn from(name: TierName) -> Self {
+        match name {
+            TierName::Core => Self::Core,
+            TierName::Full => Self::Full,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum OzoneName {
+    Ml,
+    Arosa,
+}
+
+impl From<OzoneName> for OzoneSource {
+    fn from(name: OzoneName) -> Self {
+        match name {
+            OzoneName::Ml => Self::McPetersLabow,
+            OzoneName::Arosa => Self::Arosa,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum Switch {
+    On,
+    Off,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum AerosolSource {
+    Opac,
+    Jaenicke,
+}
+
+/// A share: `1%` or `0.01`.
+fn share(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(percent) => (percent, 0.01),
+        None => (text, 1.0),
+    };
+    let value = number.trim().parse::<f64>().map_err(|_| "say 1% or 0.01".to_string())? * unit;
+    // Rounded as written, so that 7% is 0.07.
+    let value = format!("{value:.12}").parse().unwrap_or(value);
+    if (1e-5..=1.0).contains(&value) { Ok(value) } else { Err("0.001% to 100% is possible".into()) }
+}
+
+/// A pixel: `412,97`.
+fn pixel(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once(',').ok_or("say X,Y")?;
+    let number = |part: &str| part.trim().parse().map_err(|_| "say X,Y in whole numbers".to_string());
+    Ok((number(parts.0)?, number(parts.1)?))
+}
+
+impl AerosolArgs {
+    /// Refuses the flags that nothing answers yet, rather than to ignore them.
+    fn refuse(&self) -> Result<(), SceneError> {
+        let given = [
+            ("--aerosol-source", self.aerosol_source.is_some()),
+            ("--humidity", self.humidity.is_some()),
+            ("--aod", self.aod.is_some()),
+            ("--visibility", self.visibility.is_some()),
+            ("--turbidity", self.turbidity.is_some()),
+        ];
+        match given.iter().find(|(_, given)| *given) {
+            None => Ok(()),
+            Some((flag, _)) => {
+                Err(SceneError::Refused(format!("this version renders molecules and ozone only: leave out {flag}")))
+            }
+        }
+    }
+}
+
+impl RenderArgs {
+    /// The scene of the flags laid over `base`, validated.
+    pub(super) fn scene(&self, base: Scene) -> Result<Scene, SceneError> {
+        self.aerosol.refuse()?;
+        let scene = Scene {
+            altitude_km: self.altitude.unwrap_or(base.altitude_km),
+            top_km: self.top.unwrap_or(base.top_km),
+            sun_elevation_deg: self.sun_elevation.unwrap_or(base.sun_elevation_deg),
+            sun_azimuth_deg: self.sun_azimuth.unwrap_or(base.sun_azimuth_deg),
+            sun_disc: self.sun_disc.map_or(base.sun_disc, |switch| switch == Switch::On),
+            month: self.month.unwrap_or(base.month),
+            latitude_deg: self.latitude.unwrap_or(base.latitude_deg),
+            ozone_source: self.ozone_source.map_or(base.ozone_source, Into::into),
+            ozone_du: self.ozone.or(base.ozone_du),
+            biome: self.aerosol.biome.unwrap_or(base.biome),
+            albedo: self.albedo.clone().unwrap_or(base.albedo),
+            wavelengths_nm: self.wavelengths.clone().unwrap_or(base.wavelengths_nm),
+            camera: self.camera.unwrap_or(base.camera),
+            fov_deg: self.fov.or(base.fov_deg),
+            view_azimuth_deg: self.view_azimuth.or(base.view_azimuth_deg),
+            view_elevation_deg: self.view_elevation.or(base.view_elevation_deg),
+            width: self.width.or(base.width),
+            height: self.height.or(base.height),
+            exposure_ev: self.exposure.or(base.exposure_ev),
+            method: self.method.map_or(base.method, Into::into),
+            seed: self.seed.unwrap_or(base.seed),
+            spp: self.spp.or(base.spp),
+            error: self.error.or(base.error),
+        };
+        scene.validate()?;
+        Ok(scene)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Debug, Parser)]
+    struct Program {
+        #[command(flatten)]
+        args: RenderArgs,
+    }
+
+    fn scene(flags: &str) -> Result<Scene, String> {
+        let words = ["airlight"].into_iter().chain(flags.split_whitespace());
+        let program = Program::try_parse_from(words).map_err(|e| e.to_string())?;
+        program.args.scene(Scene::default()).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn no_flags_are_the_default_scene() {
+        assert_eq!(scene(""), Ok(Scene::default()));
+    }
+
+    #[test]
+    fn flags_say_what_they_are_named_after() {
+        let got =
+            scene("--sun-elevation -5 --error 2% --albedo ocean --sun-disc off --ozone-source arosa").expect("valid");
+        let expected = Scene {
+            sun_elevation_deg: -5.0,
+            error: Some(0.02),
+            albedo: Albedo::Ground("ocean".into()),
+            sun_disc: false,
+            ozone_source: OzoneSource::Arosa,
+            ..Scene::default()
+        };
+        assert_eq!(got, expected);
+        assert_eq!(scene("--error 0.02").map(|s| s.error), scene("--error 2%").map(|s| s.error));
+        assert_eq!(scene("--wavelengths 450,550").map(|s| s.wavelengths_nm.nm().to_vec()), Ok(vec![450.0, 550.0]));
+    }
+
+    #[test]
+    fn wrong_flags_are_refused_with_what_is_possible() {
+        let refusal = |flags| scene(flags).expect_err("refused");
+        assert!(refusal("--camera fishey").contains("fisheye"));
+        assert!(refusal("--biome urbn").contains("urban"));
+        assert!(refusal("--biome urban").contains("molecules and ozone only"));
+        assert!(refusal("--aod 0.1").contains("leave out --aod"));
+        assert!(refusal("--aod 0.1 --turbidity 3").contains("cannot be used with"));
+        assert!(refusal("--sun-elevation 100").contains("-90 to 90 degrees"));
+        assert!(refusal("--error 200%").contains("0.001% to 100%"));
+        assert!(refusal("--wavelengths 200,300").contains("300 to 1000 nm"));
+        assert!(refusal("--threads 0").contains("1..=1024"));
+    }
+}

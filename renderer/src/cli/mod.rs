@@ -1,0 +1,76 @@
+//! The command `airlight`.
+//!
+//! Results go to files, and what they are to standard output; progress and errors
+//! go to standard error. Exit codes: 0 done, 1 error, 2 a flag or a scene that cannot
+//! be, 130 stopped by Ctrl-C (what was there is written first).
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "the command line is where Airlight speaks")]
+
+mod args;
+mod progress;
+mod radiance;
+mod render;
+
+use crate::scene::SceneError;
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Renders the sky of a spherical planet from optical tables.
+#[derive(Debug, Parser)]
+#[command(name = "airlight", version, max_term_width = 100)]
+enum Command {
+    /// Render a picture: EXR to calculate with, PNG to look at
+    Render(Box<args::RenderArgs>),
+    /// Answer a file of reference cases: radiances with their standard errors
+    Radiance(args::RadianceArgs),
+}
+
+/// What a command ends in, short of an error.
+enum Outcome {
+    Done,
+    Interrupted,
+}
+
+/// Why a command fails: one sentence and an exit code.
+struct Failure {
+    message: String,
+    code: u8,
+}
+
+impl Failure {
+    fn usage(message: impl std::fmt::Display) -> Self {
+        Self { message: message.to_string(), code: 2 }
+    }
+
+    fn error(message: impl std::fmt::Display) -> Self {
+        Self { message: message.to_string(), code: 1 }
+    }
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        Self::usage(error)
+    }
+}
+
+/// Runs the program with the arguments of the process.
+#[must_use]
+pub fn main() -> ExitCode {
+    let outcome = match Command::parse() {
+        Command::Render(args) => render::run(&args),
+        Command::Radiance(args) => radiance::run(&args),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::Interrupted) => ExitCode::from(130),
+        Err(Failure { message, code }) => {
+            eprintln!("airlight: {message}");
+            ExitCode::from(code)
+        }
+    }
+}
+
+/// A pool of that many threads, all processors if `None`.
+fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Failure> {
+    let threads = threads.map_or(0, usize::from);
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::error)
+}

@@ -1,0 +1,42 @@
+//! `airlight radiance`.
+
+use super::args::RadianceArgs;
+use super::progress::{Line, duration};
+use super::{Failure, Outcome};
+use crate::cases::{self, Effort, Refusal, Report, Settings};
+use std::collections::BTreeMap;
+
+pub(super) fn run(args: &RadianceArgs) -> Result<Outcome, Failure> {
+    let suite = cases::read(&args.cases).map_err(Failure::error)?;
+    let effort = args.spp.map_or(Effort::Error(args.error.unwrap_or(0.01)), Effort::Paths);
+    let settings = Settings { tier: args.tier.into(), method: args.method.into(), effort, seed: args.seed };
+    let line = Line::new(args.quiet);
+    let progress = |done: usize, all: usize| {
+        line.show(done as f64 / all.max(1) as f64, |_| format!("{done} of {all} cases"));
+    };
+    let pool = super::pool(args.threads)?;
+    let report = pool.install(|| cases::run(&suite, &settings, &progress));
+    line.clear();
+    let path = &args.output;
+    tables::file::replace(path, cases::to_csv(&report.answers).as_bytes())
+        .map_err(|error| Failure::error(format!("{}: cannot be written: {error}", path.display())))?;
+    if !args.quiet {
+        describe(&report);
+        println!("time        {} on {} threads", duration(line.elapsed().as_secs_f64()), pool.current_num_threads());
+        println!("written     {}", path.display());
+    }
+    Ok(Outcome::Done)
+}
+
+/// How many were answered, and the others by the reason why not.
+fn describe(report: &Report) {
+    let paths: u64 = report.answers.iter().map(|answer| answer.paths).sum();
+    println!("answered    {} cases with {paths} paths", report.answers.len());
+    let mut reasons: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for Refusal { id, why } in &report.refusals {
+        reasons.entry(why).or_default().push(id);
+    }
+    for (why, ids) in reasons {
+        println!("refused     {} cases, {why}: {}", ids.len(), ids.join(", "));
+    }
+}

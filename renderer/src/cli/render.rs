@@ -1,0 +1,179 @@
+//! `airlight render`.
+
+use super::args::RenderArgs;
+use super::progress::{Line, amount, duration, percent, size};
+use super::{Failure, Outcome};
+use crate::data::Data;
+use crate::film::{DiscLayer, Estimate, Picture, exr, png, tone};
+use crate::render::{Control, RenderError, Rendering, Sky, Summary, disc_layer, receipt, render, replay};
+use crate::scene::Scene;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
+    let base = args.scene.as_deref().map_or_else(|| Ok(Scene::default()), read_scene)?;
+    let scene = args.scene(base)?;
+    let files = Files::new(&args.output)?;
+    let data = Data::load(&args.data).map_err(Failure::error)?;
+    let sky = Sky::new(&scene, &data).map_err(|error| match error {
+        RenderError::Scene(error) => error.into(),
+        other => Failure::error(other),
+    })?;
+    if let Some((x, y)) = args.pixel {
+        return print_sample(&scene, &sky, (x, y), args.sample);
+    }
+    let pool = super::pool(args.threads)?;
+    let stop = stop_on_interrupt();
+    let line = Line::new(args.quiet);
+    let observe = |progress: crate::render::Progress| {
+        line.show(progress.fraction, |elapsed| {
+            let rate = amount(progress.samples as f64 / elapsed);
+            format!("error {}  {rate} samples/s", percent(progress.error))
+        });
+    };
+    let work = || -> Result<(Summary, DiscLayer, Rendering), RenderError> {
+        let summary = Summary::new(&sky, scene.seed);
+        let rendering = render(&scene, &sky, Control { stop: &stop, observe: &observe })?;
+        Ok((summary, disc_layer(&scene, &sky), rendering))
+    };
+    let (summary, disc, rendering) = pool.install(work).map_err(|error| match error {
+        RenderError::NotFinite { x, y, sample } => {
+            let words: Vec<String> = std::env::args().collect();
+            Failure::error(format!("{error}; replay it with: {} --pixel {x},{y} --sample {sample}", words.join(" ")))
+        }
+        other => Failure::error(other),
+    })?;
+    line.clear();
+
+    let picture = Picture { film: &rendering.film, disc: &disc, colour: sky.colour() };
+    let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(&picture));
+    let attributes = receipt::receipt(&scene, &data, &sky, &rendering, &summary, exposure_ev);
+    let spectral = args.spectral.then_some(scene.wavelengths_nm.nm());
+    let exr = exr::encode(&picture, spectral, &attributes).map_err(Failure::error)?;
+    let png = png::encode(&picture, exposure_ev).map_err(Failure::error)?;
+    write(&files.exr, &exr)?;
+    write(&files.png, &png)?;
+    if !args.quiet {
+        describe(&scene, &sky, &summary, &rendering);
+        println!("time        {} on {} threads", duration(line.elapsed().as_secs_f64()), pool.current_num_threads());
+        println!("written     {} ({})", files.exr.display(), size(exr.len()));
+        println!("            {} ({}, EV {exposure_ev:.1})", files.png.display(), size(png.len()));
+    }
+    if rendering.stopped {
+        eprintln!("airlight: stopped by Ctrl-C; the picture holds the samples that were taken until then");
+        return Ok(Outcome::Interrupted);
+    }
+    Ok(Outcome::Done)
+}
+
+/// A scene from JSON, or from the EXR file of a picture.
+fn read_scene(path: &Path) -> Result<Scene, Failure> {
+    let at = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let bytes = std::fs::read(path).map_err(|error| Failure::error(at(&format!("cannot be read: {error}"))))?;
+    let json = if has_extension(path, "exr") {
+        let found = exr::text_attribute(&bytes, receipt::SCENE).map_err(|error| Failure::usage(at(&error)))?;
+        found.ok_or_else(|| Failure::usage(at(&"a picture that carries no scene")))?
+    } else {
+        String::from_utf8(bytes).map_err(|error| Failure::usage(at(&error)))?
+    };
+    Scene::from_json(&json).map_err(|error| Failure::usage(at(&error)))
+}
+
+fn has_extension(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
+}
+
+/// Where the picture goes.
+struct Files {
+    exr: PathBuf,
+    png: PathBuf,
+}
+
+impl Files {
+    /// Refuses a name that is not that of an EXR file in a folder that is there.
+    fn new(exr: &Path) -> Result<Self, Failure> {
+        if !has_extension(exr, "exr") {
+            return Err(Failure::usage(format!("{}: the name of the picture must end in .exr", exr.display())));
+        }
+        let folder = exr.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+            return Err(Failure::usage(format!("{}: there is no such folder to write to", folder.display())));
+        }
+        Ok(Self { exr: exr.into(), png: exr.with_extension("png") })
+    }
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    tables::file::replace(path, bytes)
+        .map_err(|error| Failure::error(format!("{}: cannot be written: {error}", path.display())))
+}
+
+/// A flag that Ctrl-C sets; a second Ctrl-C ends the program at once.
+fn stop_on_interrupt() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    let handler = move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    };
+    // Without a handler Ctrl-C ends the program as it always does.
+    if ctrlc::set_handler(handler).is_err() {
+        eprintln!("airlight: Ctrl-C will end the program without a picture");
+    }
+    stop
+}
+
+/// What was rendered.
+fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering) {
+    let (width, height) = scene.size();
+    println!("sun         elevation {} degrees, azimuth {} degrees", scene.sun_elevation_deg, scene.sun_azimuth_deg);
+    println!(
+        "air         molecules and ozone {:.1} DU (month {}, latitude {}), top {} km, ground albedo {}",
+        sky.ozone_du(),
+        scene.month,
+        scene.latitude_deg,
+        scene.top_km,
+        scene.albedo
+    );
+    let of = |Estimate { mean, error }: Estimate, unit: &str| {
+        let spread = if mean > 0.0 { format!(" (+- {})", percent(error / mean)) } else { String::new() };
+        format!("{} {unit}{spread}", amount(mean))
+    };
+    let place = if scene.in_space() { ", above the atmosphere: nothing overhead" } else { "" };
+    println!("observer    {} km{place}", scene.altitude_km);
+    println!("illuminance sun {} lux, sky {} on the horizontal", amount(summary.sun_lux), of(summary.sky_lux, "lux"));
+    println!("zenith      {}", of(summary.zenith_cd_m2, "cd/m2"));
+    let (film, errors) = (&rendering.film, rendering.errors);
+    let (least, most) = (film.least_samples(), film.most_samples());
+    let samples = if least == most { most.to_string() } else { format!("{least} to {most}") };
+    println!(
+        "picture     {width} x {height}, {} wavelengths, {samples} samples per pixel, seed {}",
+        sky.wavelengths(),
+        scene.seed
+    );
+    println!(
+        "error       {} (rms over mean radiance); median standard error {} of luminance, {} of spectral radiance",
+        percent(errors.relative),
+        percent(errors.median_luminance),
+        percent(errors.median_spectral)
+    );
+}
+
+/// One sample, number by number.
+fn print_sample(scene: &Scene, sky: &Sky, (x, y): (u32, u32), sample: u32) -> Result<Outcome, Failure> {
+    let (width, height) = scene.size();
+    if x >= width || y >= height {
+        return Err(Failure::usage(format!("pixel is {x},{y}; 0,0 to {},{} is possible", width - 1, height - 1)));
+    }
+    let Some((direction, factors)) = replay(scene, sky, x, y, sample) else {
+        return Err(Failure::usage(format!("pixel {x},{y} lies outside the picture's circle")));
+    };
+    println!("direction east {}, north {}, up {}", direction.x, direction.y, direction.z);
+    println!("wavelength_nm,radiance_w_m2_sr_nm,radiance_per_solar_irradiance_sr");
+    for ((nm, factor), irradiance) in scene.wavelengths_nm.nm().iter().zip(factors).zip(sky.irradiance_w_m2_nm()) {
+        println!("{nm},{:e},{factor:e}", factor * irradiance);
+    }
+    Ok(Outcome::Done)
+}

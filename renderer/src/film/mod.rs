@@ -1,0 +1,315 @@
+//! What is known of each pixel so far, and the files it is written to.
+//!
+//! Every pixel keeps the mean and the spread of its samples for each wavelength and,
+//! apart from them, for R, G, B and Y: the wavelengths of one sample are
+//! correlated, so the error of a colour cannot be had from the errors of wavelengths.
+//! The solar disc is no sample; it is laid over the picture when it is written.
+
+pub mod exr;
+pub mod png;
+pub mod tone;
+
+use crate::spectrum::{Colour, linear_srgb, luminance};
+use std::collections::BTreeMap;
+
+/// R, G, B and Y follow the wavelengths of a pixel.
+const COLOURS: usize = 4;
+
+/// Running statistics of a picture: arrays over pixel (row by row from the top), then
+/// channel (N wavelengths, then R, G, B, Y).
+#[derive(Debug, Clone)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    irradiance_w_m2_nm: Vec<f64>,
+    counts: Vec<u32>,
+    means: Vec<f64>,
+    /// Sums of squared deviations from the mean.
+    squares: Vec<f64>,
+}
+
+/// One row of a film; rows can be filled at the same time.
+#[derive(Debug)]
+pub struct Row<'a> {
+    /// Index from the top.
+    pub y: u32,
+    channels: usize,
+    counts: &'a mut [u32],
+    means: &'a mut [f64],
+    squares: &'a mut [f64],
+}
+
+/// A mean and its standard error, sqrt(sum (x - mean)^2 / (n (n - 1))); the error of
+/// fewer than two samples is infinite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Mean of the samples.
+    pub mean: f64,
+    /// Standard error of the mean.
+    pub error: f64,
+}
+
+/// How well a picture is known, the solar disc left out. All are fractions, 0.01 is 1 %;
+/// infinite before every pixel has two samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Errors {
+    /// sqrt(mean over pixels and wavelengths of the squared standard error of the spectral
+    /// radiance) over the mean spectral radiance.
+    pub relative: f64,
+    /// Median over pixels of the relative standard error of the luminance.
+    pub median_luminance: f64,
+    /// Median over pixels and wavelengths of the relative standard error of the spectral radiance.
+    pub median_spectral: f64,
+}
+
+impl Film {
+    /// An empty film for N = `irradiance_w_m2_nm.len()` wavelengths; the numbers are the sun's spectral
+    /// irradiance there (W m^-2 nm^-1), by which radiance factors become radiances.
+    #[must_use]
+    pub fn new(width: u32, height: u32, irradiance_w_m2_nm: Vec<f64>) -> Self {
+        let pixels = width as usize * height as usize;
+        let values = pixels * (irradiance_w_m2_nm.len() + COLOURS);
+        Self {
+            width,
+            height,
+            irradiance_w_m2_nm,
+            counts: vec![0; pixels],
+            means: vec![0.0; values],
+            squares: vec![0.0; values],
+        }
+    }
+
+    /// Bytes that a film of this size takes.
+    #[must_use]
+    pub fn bytes(width: u32, height: u32, wavelengths: usize) -> u64 {
+        u64::from(width) * u64::from(height) * (4 + 16 * (wavelengths + COLOURS) as u64)
+    }
+
+    /// Width and height in pixels.
+    #[must_use]
+    pub fn size(&self) -> (u32, u32) {
+        (self.width, self.height)
+    }
+
+    /// Number of wavelengths N.
+    #[must_use]
+    pub fn wavelengths(&self) -> usize {
+        self.irradiance_w_m2_nm.len()
+    }
+
+    fn channels(&self) -> usize {
+        self.wavelengths() + COLOURS
+    }
+
+    /// The rows from the top, to be filled in any order.
+    #[must_use]
+    pub fn rows_mut(&mut self) -> Vec<Row<'_>> {
+        let (width, channels) = (self.width as usize, self.channels());
+        let values = width * channels;
+        let parts =
+            self.counts.chunks_mut(width).zip(self.means.chunks_mut(values)).zip(self.squares.chunks_mut(values));
+        (0..).zip(parts).map(|(y, ((counts, means), squares))| Row { y, channels, counts, means, squares }).collect()
+    }
+
+    /// Samples that pixel `pixel` (row by row) has; none where the picture shows nothing.
+    #[must_use]
+    pub fn samples(&self, pixel: usize) -> u32 {
+        self.counts[pixel]
+    }
+
+    /// Samples over all pixels.
+    #[must_use]
+    pub fn total_samples(&self) -> u64 {
+        self.counts.iter().map(|&n| u64::from(n)).sum()
+    }
+
+    /// The largest number of samples of a pixel.
+    #[must_use]
+    pub fn most_samples(&self) -> u32 {
+        self.counts.iter().copied().max().unwrap_or(0)
+    }
+
+    /// The smallest number of samples of a pixel that has any.
+    #[must_use]
+    pub fn least_samples(&self) -> u32 {
+        self.counts.iter().copied().filter(|&n| n > 0).min().unwrap_or(0)
+    }
+
+    fn estimate(&self, pixel: usize, channel: usize) -> Estimate {
+        let n = f64::from(self.counts[pixel]);
+        let index = pixel * self.channels() + channel;
+        let error = if n > 1.0 { (self.squares[index] / (n * (n - 1.0))).sqrt() } else { f64::INFINITY };
+        Estimate { mean: self.means[index], error }
+    }
+
+    /// Spectral radiance in W m^-2 sr^-1 nm^-1 of a pixel at wavelength `index`.
+    #[must_use]
+    pub fn radiance(&self, pixel: usize, index: usize) -> Estimate {
+        let Estimate { mean, error } = self.estimate(pixel, index);
+        let irradiance = self.irradiance_w_m2_nm[index];
+        Estimate { mean: mean * irradiance, error: error * irradiance }
+    }
+
+    /// Linear sRGB of a pixel; white at 1 cd/m^2 is (1, 1, 1).
+    #[must_use]
+    pub fn rgb(&self, pixel: usize) -> [Estimate; 3] {
+        let n = self.wavelengths();
+        [n, n + 1, n + 2].map(|channel| self.estimate(pixel, channel))
+    }
+
+    /// Luminance of a pixel in cd/m^2.
+    #[must_use]
+    pub fn luminance(&self, pixel: usize) -> Estimate {
+        self.estimate(pixel, self.wavelengths() + 3)
+    }
+
+    /// How well the picture is known. Pixels outside the picture do not count, and neither
+    /// do black ones in the medians.
+    #[must_use]
+    pub fn errors(&self) -> Errors {
+        let (mut radiance, mut squared) = (0.0, 0.0);
+        let (mut count, mut of_luminance, mut of_radiance) = (0.0, Vec::new(), Vec::new());
+        for pixel in (0..self.counts.len()).filter(|&pixel| self.counts[pixel] > 0) {
+            for index in 0..self.wavelengths() {
+                let Estimate { mean, error } = self.radiance(pixel, index);
+                radiance += mean;
+                squared += error * error;
+                count += 1.0;
+                of_radiance.push(error / mean);
+            }
+            let Estimate { mean, error } = self.luminance(pixel);
+            of_luminance.push(error / mean);
+        }
+        Errors {
+            relative: (squared / count).sqrt() / (radiance / count),
+            median_luminance: median(of_luminance),
+            median_spectral: median(of_radiance),
+        }
+    }
+}
+
+/// Median of the numbers that are numbers; NaN if there are none.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.retain(|v| !v.is_nan());
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+impl Row<'_> {
+    /// Adds one sample to pixel `x`: radiance factors in sr^-1 at the wavelengths and their linear sRGB.
+    ///
+    /// Welford's update: d = x - mean; mean += d / n; squares += d (x - mean).
+    pub fn add(&mut self, x: u32, factors: &[f64], rgb: [f64; 3]) {
+        let x = x as usize;
+        self.counts[x] += 1;
+        let weight = 1.0 / f64::from(self.counts[x]);
+        let own = x * self.channels..(x + 1) * self.channels;
+        let [r, g, b] = rgb;
+        let sample = factors.iter().copied().chain([r, g, b, luminance(rgb)]);
+        for ((mean, squares), value) in self.means[own.clone()].iter_mut().zip(&mut self.squares[own]).zip(sample) {
+            let deviation = value - *mean;
+            *mean += deviation * weight;
+            *squares += deviation * (value - *mean);
+        }
+    }
+
+    /// Pixels in the row.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        // A film's width is a u32.
+        self.counts.len() as u32
+    }
+}
+
+/// The sun's own image: by pixel, the radiance factors in sr^-1 that its disc adds.
+pub type DiscLayer = BTreeMap<usize, Vec<f64>>;
+
+/// A film with the solar disc on it.
+#[derive(Debug, Clone, Copy)]
+pub struct Picture<'a> {
+    /// The sky and the ground.
+    pub film: &'a Film,
+    /// The sun; empty if it is not to be seen.
+    pub disc: &'a DiscLayer,
+    /// What colour the disc's radiance factors have.
+    pub colour: &'a Colour,
+}
+
+impl Picture<'_> {
+    /// Linear sRGB of a pixel in cd/m^2, the disc included.
+    #[must_use]
+    pub fn rgb(&self, pixel: usize) -> [f64; 3] {
+        let sky = self.film.rgb(pixel).map(|estimate| estimate.mean);
+        let Some(factors) = self.disc.get(&pixel) else { return sky };
+        let sun = linear_srgb(self.colour.xyz(factors));
+        [sky[0] + sun[0], sky[1] + sun[1], sky[2] + sun[2]]
+    }
+
+    /// Spectral radiance in W m^-2 sr^-1 nm^-1 of a pixel at wavelength `index`, the disc included.
+    #[must_use]
+    pub fn radiance(&self, pixel: usize, index: usize) -> f64 {
+        let sun = self.disc.get(&pixel).map_or(0.0, |factors| factors[index]);
+        self.film.radiance(pixel, index).mean + sun * self.film.irradiance_w_m2_nm[index]
+    }
+}
+
+/// Why a picture cannot be encoded, or read.
+#[derive(Debug, thiserror::Error)]
+pub enum EncodeError {
+    /// The EXR library refused.
+    #[error("EXR: {0}")]
+    Exr(String),
+    /// The PNG library refused.
+    #[error("PNG: {0}")]
+    Png(#[from] ::png::EncodingError),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn film_of(samples: &[[f64; 2]]) -> Film {
+        let mut film = Film::new(2, 1, vec![2.0, 3.0]);
+        let mut rows = film.rows_mut();
+        for s in samples {
+            rows[0].add(1, s, [s[0], s[1], 0.0]);
+        }
+        film
+    }
+
+    #[test]
+    fn mean_and_standard_error_are_those_of_the_samples() {
+        // Samples 1, 2, 6: mean 3, squared deviations 4 + 1 + 9 = 14, error sqrt(14 / 6).
+        // The offset of 1e8 would cost a plain sum of squares all of its digits.
+        for offset in [0.0, 1e8] {
+            let film = film_of(&[[offset + 1.0, 5.0], [offset + 2.0, 5.0], [offset + 6.0, 5.0]]);
+            let red = film.rgb(1)[0];
+            assert!((red.mean - offset - 3.0).abs() < 1e-7 && (red.error - (14.0_f64 / 6.0).sqrt()).abs() < 1e-7);
+            let radiance = film.radiance(1, 0);
+            assert!((radiance.mean - 2.0 * red.mean).abs() < 1e-6 && (radiance.error - 2.0 * red.error).abs() < 1e-6);
+            assert_eq!(film.radiance(1, 1), Estimate { mean: 15.0, error: 0.0 });
+        }
+    }
+
+    #[test]
+    fn the_error_of_luminance_heeds_that_channels_vary_together() {
+        // Green falls as red rises, so that Y = 0.2126 R + 0.7152 G stays constant.
+        let green = |red: f64| (1.0 - 0.212_639_005_9 * red) / 0.715_168_678_8;
+        let film = film_of(&[1.0, 2.0, 4.0].map(|red| [red, green(red)]));
+        let y = film.luminance(1);
+        assert!((y.mean - 1.0).abs() < 1e-12 && y.error < 1e-12 && film.rgb(1)[1].error > 0.1);
+    }
+
+    #[test]
+    fn the_error_of_a_picture_is_rms_error_over_mean() {
+        let film = film_of(&[[1.0, 1.0], [3.0, 1.0]]);
+        // Radiances 2 * 2 = 4 with error 2 * 1, and 3 with error 0; pixel 0 has no samples.
+        let errors = film.errors();
+        assert!((errors.relative - 2.0_f64.sqrt() / 3.5).abs() < 1e-12, "{errors:?}");
+        assert!((errors.median_spectral - 0.5).abs() < 1e-12 && film.most_samples() == 2);
+        assert!(film_of(&[[1.0, 1.0]]).errors().relative.is_infinite());
+    }
+}

@@ -1,0 +1,49 @@
+//! What a picture says about how it was made.
+
+use super::{Rendering, Sky, Summary};
+use crate::data::Data;
+use crate::film::exr::Attribute;
+use crate::scene::Scene;
+
+/// The attribute that holds the scene.
+pub const SCENE: &str = "airlight.scene";
+
+/// The attributes of a picture's EXR file, names beginning with `airlight.`: program and version, the scene as JSON
+/// (`airlight render` reads it), samples, errors, ozone, illuminances, exposure of the PNG, and
+/// each table with its checksum. No clock, machine or folder.
+#[must_use]
+pub fn receipt(
+    scene: &Scene,
+    data: &Data,
+    sky: &Sky,
+    rendering: &Rendering,
+    summary: &Summary,
+    exposure_ev: f64,
+) -> Vec<(String, Attribute)> {
+    let tables: Vec<String> =
+        data.identities.iter().map(|t| format!("{} {:08x} {}", t.file, t.checksum, t.title)).collect();
+    let film = &rendering.film;
+    let text = |value: String| Attribute::Text(value);
+    let samples = |n: u32| Attribute::Integer(i32::try_from(n).unwrap_or(i32::MAX));
+    [
+        ("airlight.version", text(format!("airlight {}", env!("CARGO_PKG_VERSION")))),
+        (SCENE, text(scene.to_json())),
+        ("airlight.seed", text(scene.seed.to_string())),
+        ("airlight.samples_per_pixel_least", samples(film.least_samples())),
+        ("airlight.samples_per_pixel_most", samples(film.most_samples())),
+        ("airlight.stopped_early", text(if rendering.stopped { "yes" } else { "no" }.into())),
+        ("airlight.error", Attribute::Number(rendering.errors.relative)),
+        ("airlight.error_median_luminance", Attribute::Number(rendering.errors.median_luminance)),
+        ("airlight.error_median_spectral", Attribute::Number(rendering.errors.median_spectral)),
+        ("airlight.ozone_du", Attribute::Number(sky.ozone_du())),
+        ("airlight.illuminance_sun_lux", Attribute::Number(summary.sun_lux)),
+        ("airlight.illuminance_sky_lux", Attribute::Number(summary.sky_lux.mean)),
+        ("airlight.illuminance_sky_lux_error", Attribute::Number(summary.sky_lux.error)),
+        ("airlight.zenith_luminance_cd_m2", Attribute::Number(summary.zenith_cd_m2.mean)),
+        ("airlight.zenith_luminance_cd_m2_error", Attribute::Number(summary.zenith_cd_m2.error)),
+        ("airlight.exposure_ev", Attribute::Number(exposure_ev)),
+        ("airlight.tables", text(tables.join("\n"))),
+    ]
+    .map(|(name, value)| (name.into(), value))
+    .to_vec()
+}

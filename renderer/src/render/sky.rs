@@ -1,0 +1,214 @@
+//! A scene turned into something that answers: what arrives from a direction?
+
+use super::RenderError;
+use crate::atmosphere::{Air, AirSettings, Medium};
+use crate::data::Data;
+use crate::geometry::{Place, Shape};
+use crate::light::{SunDisc, solar_angular_radius};
+use crate::sampling::Sampler;
+use crate::scene::Scene;
+use crate::spectrum::{Colour, Packet, Wavelengths};
+use crate::transport::{self, Method, Problem};
+use glam::DVec3;
+use std::fmt::Debug;
+use std::ops::Range;
+use tables::units::{EARTH_RADIUS_M, KM};
+
+/// Everything that is computed once for a picture. All spectra are per unit of the
+/// sun's spectral irradiance above the atmosphere, in the order of the scene's wavelengths.
+#[derive(Debug)]
+pub struct Sky {
+    carriers: Vec<(Range<usize>, Box<dyn Carrier>)>,
+    place: Place,
+    colour: Colour,
+    irradiance_w_m2_nm: Vec<f64>,
+    ozone_du: f64,
+    sun_direction: DVec3,
+}
+
+impl Sky {
+    /// Prepares the atmosphere, the ground and the sun of a valid scene.
+    ///
+    /// # Errors
+    /// [`RenderError`] if the scene names what the data do not have, or a table does not reach.
+    pub fn new(scene: &Scene, data: &Data) -> Result<Self, RenderError> {
+        let wavelengths = &scene.wavelengths_nm;
+        let albedo = scene.albedo_spectrum(data)?;
+        let air = Air::new(
+            data,
+            &AirSettings {
+                month: scene.month,
+                latitude_deg: scene.latitude_deg,
+                ozone_source: scene.ozone_source,
+                ozone_du: scene.ozone_du,
+                top_m: scene.top_km * KM,
+            },
+        )?;
+        let sun_direction = scene.sun_direction();
+        let parts = Parts { wavelengths, albedo: &albedo, air: &air, data, method: scene.method, sun_direction };
+        let carriers = wavelengths.packets().into_iter().map(|packet| {
+            let carrier = match packet.lanes {
+                1 => parts.carry::<1>(&packet),
+                4 => parts.carry::<4>(&packet),
+                8 => parts.carry::<8>(&packet),
+                _ => parts.carry::<16>(&packet),
+            };
+            carrier.map(|carrier| (packet.range, carrier))
+        });
+        let irradiance = wavelengths.nm().iter().map(|&nm| data.sun.irradiance_w_m2_nm.at(nm));
+        Ok(Self {
+            carriers: carriers.collect::<Result<_, _>>()?,
+            place: Place::above(scene.altitude_km * KM),
+            colour: Colour::new(&data.sun, &data.observer, wavelengths)?,
+            irradiance_w_m2_nm: irradiance.collect::<Result<_, _>>()?,
+            ozone_du: air.ozone_du(),
+            sun_direction,
+        })
+    }
+
+    /// One unbiased estimate of the radiance factors (sr^-1) that arrive at the observer out of
+    /// `direction`, without the solar disc. The stream is that of one sample: every packet of
+    /// wavelengths begins with the same numbers, so that their paths, and their noise, are alike.
+    pub fn radiance(&self, direction: DVec3, sampler: &Sampler, factors: &mut [f64]) {
+        for (range, carrier) in &self.carriers {
+            carrier.radiance(self.place, direction, &mut sampler.clone(), &mut factors[range.clone()]);
+        }
+    }
+
+    /// Adds the solar disc seen in `direction` through the air, in sr^-1, times `weight`.
+    /// False, with nothing added, off the disc.
+    pub fn add_disc(&self, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool {
+        self.carriers
+            .iter()
+            .all(|(range, carrier)| carrier.add_disc(self.place, direction, weight, &mut factors[range.clone()]))
+    }
+
+    /// Irradiance of a level surface at the observer by direct sunlight, per unit solar irradiance:
+    /// the mean over the disc of limb darkening, transmittance and the cosine where it is
+    /// positive, by the midpoint rule in 64 rings and 16 sectors. The rings are even in mu =
+    /// sqrt(1 - u), in which the darkening is a polynomial (in u it has a root at the limb): 3e-5.
+    #[must_use]
+    pub fn direct_irradiance(&self) -> Vec<f64> {
+        const RINGS: u32 = 64;
+        const SECTORS: u32 = 16;
+        let mut factors = vec![0.0; self.wavelengths()];
+        for ring in 0..RINGS {
+            let mu = (f64::from(ring) + 0.5) / f64::from(RINGS);
+            let weight = 2.0 * mu / f64::from(RINGS * SECTORS);
+            for sector in 0..SECTORS {
+                let u = [1.0 - mu * mu, (f64::from(sector) + 0.5) / f64::from(SECTORS)];
+                for (range, carrier) in &self.carriers {
+                    carrier.add_direct(self.place, u, weight, &mut factors[range.clone()]);
+                }
+            }
+        }
+        factors
+    }
+
+    /// What colour radiance factors have.
+    #[must_use]
+    pub fn colour(&self) -> &Colour {
+        &self.colour
+    }
+
+    /// The sun's spectral irradiance above the atmosphere in W m^-2 nm^-1.
+    #[must_use]
+    pub fn irradiance_w_m2_nm(&self) -> &[f64] {
+        &self.irradiance_w_m2_nm
+    }
+
+    /// Number of wavelengths.
+    #[must_use]
+    pub fn wavelengths(&self) -> usize {
+        self.irradiance_w_m2_nm.len()
+    }
+
+    /// Vertical ozone column in Dobson units.
+    #[must_use]
+    pub fn ozone_du(&self) -> f64 {
+        self.ozone_du
+    }
+
+    /// Unit vector to the sun's centre in the observer's frame.
+    #[must_use]
+    pub fn sun_direction(&self) -> DVec3 {
+        self.sun_direction
+    }
+}
+
+/// What a packet is made from.
+struct Parts<'a> {
+    wavelengths: &'a Wavelengths,
+    albedo: &'a [f64],
+    air: &'a Air,
+    data: &'a Data,
+    method: Method,
+    sun_direction: DVec3,
+}
+
+impl Parts<'_> {
+    fn carry<const L: usize>(&self, packet: &Packet) -> Result<Box<dyn Carrier>, RenderError> {
+        let nm: [f64; L] = self.wavelengths.lanes(packet);
+        let last = packet.range.end - 1;
+        Ok(Box::new(Lanes {
+            method: self.method,
+            shape: Shape::Sphere { radius_m: EARTH_RADIUS_M },
+            medium: self.air.medium(&nm)?,
+            albedo: std::array::from_fn(|lane| self.albedo[(packet.range.start + lane).min(last)]),
+            sun: SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius())?,
+        }))
+    }
+}
+
+/// A packet of wavelengths, whatever the number of its lanes; slices are as long as
+/// the packet's range.
+trait Carrier: Debug + Send + Sync {
+    fn radiance(&self, from: Place, direction: DVec3, sampler: &mut Sampler, factors: &mut [f64]);
+    fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool;
+    fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]);
+}
+
+#[derive(Debug)]
+struct Lanes<const L: usize> {
+    method: Method,
+    shape: Shape,
+    medium: Medium<L>,
+    albedo: [f64; L],
+    sun: SunDisc<L>,
+}
+
+impl<const L: usize> Carrier for Lanes<L> {
+    fn radiance(&self, from: Place, direction: DVec3, sampler: &mut Sampler, factors: &mut [f64]) {
+        let problem = Problem {
+            shape: self.shape,
+            medium: &self.medium,
+            albedo: self.albedo,
+            sun: Some(&self.sun),
+            environment: None,
+            max_orders: None,
+        };
+        let estimate = transport::radiance(self.method, &problem, from, direction, sampler);
+        factors.copy_from_slice(&estimate[..factors.len()]);
+    }
+
+    fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool {
+        let Some(disc) = self.sun.radiance(direction) else { return false };
+        let transmittance = self.medium.transmittance(self.shape, from, direction);
+        for ((factor, radiance), transmittance) in factors.iter_mut().zip(disc).zip(transmittance) {
+            *factor += weight * radiance * transmittance;
+        }
+        true
+    }
+
+    fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]) {
+        let (direction, darkening) = self.sun.sample(u);
+        let cosine = direction.dot(from.up);
+        if cosine <= 0.0 {
+            return;
+        }
+        let transmittance = self.medium.transmittance(self.shape, from, direction);
+        for ((factor, darkening), transmittance) in factors.iter_mut().zip(darkening).zip(transmittance) {
+            *factor += weight * cosine * darkening * transmittance;
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! A few numbers that anyone can check against the sky outside.
+
+use super::Sky;
+use crate::film::Estimate;
+use crate::sampling::{Sampler, cosine_hemisphere};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Light at the observer's place, whatever the camera looks at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Summary {
+    /// Illuminance in lux of a level surface by direct sunlight.
+    pub sun_lux: f64,
+    /// Illuminance in lux of a level surface by the sky.
+    pub sky_lux: Estimate,
+    /// Luminance of the zenith in cd/m^2.
+    pub zenith_cd_m2: Estimate,
+}
+
+/// Pixel numbers of the two estimates: no picture has so many pixels.
+const HEMISPHERE: u64 = 1 << 40;
+const ZENITH: u64 = HEMISPHERE + 1;
+
+/// Samples between looks at the error, and the most of them.
+const BATCH: u64 = 1024;
+const MOST: u64 = 128 * BATCH;
+
+/// Standard error that is enough.
+const ENOUGH: f64 = 5e-3;
+
+impl Summary {
+    /// Computes the summary on the current thread pool: the sun by quadrature
+    /// ([`Sky::direct_irradiance`]); the sky as pi times the mean luminance over directions
+    /// distributed as cos(theta)/pi; both estimates to 0.5 % standard error or 131 072 samples.
+    #[must_use]
+    pub fn new(sky: &Sky, seed: u64) -> Self {
+        let hemisphere = estimate(sky, seed, HEMISPHERE, |sampler| cosine_hemisphere(DVec3::Z, sampler.next_2d()));
+        Self {
+            sun_lux: sky.colour().xyz(&sky.direct_irradiance())[1],
+            sky_lux: Estimate { mean: PI * hemisphere.mean, error: PI * hemisphere.error },
+            zenith_cd_m2: estimate(sky, seed, ZENITH, |_| DVec3::Z),
+        }
+    }
+}
+
+/// Mean luminance over the directions that `draw` gives.
+fn estimate(sky: &Sky, seed: u64, stream: u64, draw: impl Fn(&mut Sampler) -> DVec3 + Sync) -> Estimate {
+    let (mut count, mut mean, mut squares) = (0.0, 0.0, 0.0);
+    for first in (0..MOST).step_by(BATCH as usize) {
+        // Collected in order and summed by one thread: the same sum for any number of threads.
+        let luminances: Vec<f64> = (first..first + BATCH)
+            .into_par_iter()
+            .map(|sample| {
+                let mut sampler = Sampler::new(seed, stream, sample);
+                let direction = draw(&mut sampler);
+                let mut factors = vec![0.0; sky.wavelengths()];
+                sky.radiance(direction, &sampler, &mut factors);
+                sky.colour().xyz(&factors)[1]
+            })
+            .collect();
+        for y in luminances {
+            count += 1.0;
+            let deviation = y - mean;
+            mean += deviation / count;
+            squares += deviation * (y - mean);
+        }
+        if squares <= (ENOUGH * mean).powi(2) * count * (count - 1.0) {
+            break;
+        }
+    }
+    Estimate { mean, error: (squares / (count * (count - 1.0))).sqrt() }
+}

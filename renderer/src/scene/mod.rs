@@ -1,0 +1,285 @@
+//! The description of one picture, checked before any work.
+//!
+//! A scene can be written as JSON and is carried by the pictures made from it. Keys are
+//! the names of the fields; a key that is left out has its default, an unknown key is an error.
+
+mod names;
+mod validate;
+
+pub use names::{Biome, CameraKind, nearest};
+pub use validate::SceneError;
+
+use crate::atmosphere::OzoneSource;
+use crate::camera::{Camera, Projection, direction_at};
+use crate::data::Data;
+use crate::spectrum::Wavelengths;
+use crate::transport::Method;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::str::FromStr;
+use tables::units::{EARTH_RADIUS_M, KM};
+
+/// Samples per pixel where neither a number nor an error is asked for.
+pub const DEFAULT_SPP: u32 = 64;
+
+/// One picture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Scene {
+    /// Altitude of the observer above the ground in km, 0 to 1e6.
+    pub altitude_km: f64,
+    /// Top of the atmosphere in km, 1 to 120.
+    pub top_km: f64,
+    /// True elevation of the sun's centre at the observer in degrees, -90 to 90.
+    pub sun_elevation_deg: f64,
+    /// Azimuth of the sun in degrees clockwise from north, -360 to 360.
+    pub sun_azimuth_deg: f64,
+    /// Whether the disc itself is drawn. The light is that of the disc either way.
+    pub sun_disc: bool,
+    /// Month, 1 to 12: which ozone.
+    pub month: u8,
+    /// Latitude in degrees, north positive, -90 to 90: which ozone.
+    pub latitude_deg: f64,
+    /// Which measured ozone.
+    pub ozone_source: OzoneSource,
+    /// Ozone column in Dobson units, 0 to 1000; the source's own if not given.
+    pub ozone_du: Option<f64>,
+    /// Aerosols. Only none can be rendered so far.
+    pub biome: Biome,
+    /// Reflectance of the ground.
+    pub albedo: Albedo,
+    /// Wavelengths in nm. Default: 16 from 380 to 780 nm.
+    pub wavelengths_nm: Wavelengths,
+    /// Projection.
+    pub camera: CameraKind,
+    /// Field of view in degrees: of the width (pinhole, 0.01 to 179, default 60) or of
+    /// the circle (fisheye, 1 to 360, default 180).
+    pub fov_deg: Option<f64>,
+    /// Azimuth of the view in degrees clockwise from north, -360 to 360. Default:
+    /// the sun's; 0 for a fisheye that looks straight up or down.
+    pub view_azimuth_deg: Option<f64>,
+    /// Elevation of the view in degrees, -90 to 90. Default: inside the atmosphere 90 for a fisheye
+    /// and 0 for a pinhole; from above it, -90 and the horizon of the ground.
+    pub view_elevation_deg: Option<f64>,
+    /// Width in pixels, 1 to 16384. Default 256; latlong 512.
+    pub width: Option<u32>,
+    /// Height in pixels, 1 to 16384. Default 256.
+    pub height: Option<u32>,
+    /// Exposure of the PNG, EV at ISO 100, -30 to 30; automatic if not given.
+    pub exposure_ev: Option<f64>,
+    /// Estimator.
+    pub method: Method,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Samples per pixel, 1 to 10^6; with `error` the most of them.
+    pub spp: Option<u32>,
+    /// Relative error at which to stop, 1e-5 to 1.
+    pub error: Option<f64>,
+}
+
+/// What the ground reflects: Lambertian.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Albedo {
+    /// The same at every wavelength, 0 to 1.
+    Grey(f64),
+    /// The spectrum of a ground of the data, by name.
+    Ground(String),
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            altitude_km: 0.002,
+            top_km: 120.0,
+            sun_elevation_deg: 30.0,
+            sun_azimuth_deg: 180.0,
+            sun_disc: true,
+            month: 6,
+            latitude_deg: 45.0,
+            ozone_source: OzoneSource::McPetersLabow,
+            ozone_du: None,
+            biome: Biome::None,
+            albedo: Albedo::Grey(0.1),
+            wavelengths_nm: Wavelengths::default(),
+            camera: CameraKind::Fisheye,
+            fov_deg: None,
+            view_azimuth_deg: None,
+            view_elevation_deg: None,
+            width: None,
+            height: None,
+            exposure_ev: None,
+            method: Method::Paths,
+            seed: 0,
+            spp: None,
+            error: None,
+        }
+    }
+}
+
+impl Scene {
+    /// Reads a scene from JSON; it is not validated yet.
+    ///
+    /// # Errors
+    /// [`SceneError::Malformed`] with line and column.
+    pub fn from_json(text: &str) -> Result<Self, SceneError> {
+        Ok(serde_json::from_str(text)?)
+    }
+
+    /// The scene with every default that depends on others written out.
+    #[must_use]
+    pub fn resolved(&self) -> Self {
+        let (width, height) = self.size();
+        let (view_azimuth_deg, view_elevation_deg) = self.view_deg();
+        let sphere = self.camera == CameraKind::Latlong;
+        Self {
+            fov_deg: (!sphere).then(|| self.field_of_view_deg()),
+            view_azimuth_deg: Some(view_azimuth_deg),
+            view_elevation_deg: (!sphere).then_some(view_elevation_deg),
+            width: Some(width),
+            height: Some(height),
+            spp: self.spp_limit(),
+            ..self.clone()
+        }
+    }
+
+    /// The scene as JSON, one line, defaults written out.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        // A struct of numbers and words has no value that JSON lacks once validated.
+        serde_json::to_string(&self.resolved()).unwrap_or_default()
+    }
+
+    /// Whether the observer is at or above the top of the atmosphere.
+    #[must_use]
+    pub fn in_space(&self) -> bool {
+        self.altitude_km >= self.top_km
+    }
+
+    /// Unit vector to the sun's centre in the observer's frame.
+    #[must_use]
+    pub fn sun_direction(&self) -> DVec3 {
+        direction_at(self.sun_azimuth_deg.to_radians(), self.sun_elevation_deg.to_radians())
+    }
+
+    /// Width and height in pixels.
+    #[must_use]
+    pub fn size(&self) -> (u32, u32) {
+        let width = if self.camera == CameraKind::Latlong { 512 } else { 256 };
+        (self.width.unwrap_or(width), self.height.unwrap_or(256))
+    }
+
+    /// The most samples per pixel; `None` if only the error stops the picture.
+    #[must_use]
+    pub fn spp_limit(&self) -> Option<u32> {
+        self.spp.or(if self.error.is_some() { None } else { Some(DEFAULT_SPP) })
+    }
+
+    fn field_of_view_deg(&self) -> f64 {
+        self.fov_deg.unwrap_or(if self.camera == CameraKind::Pinhole { 60.0 } else { 180.0 })
+    }
+
+    /// Azimuth and elevation of the view in degrees.
+    fn view_deg(&self) -> (f64, f64) {
+        let elevation = self.view_elevation_deg.unwrap_or(match (self.camera, self.in_space()) {
+            (CameraKind::Latlong, _) | (CameraKind::Pinhole, false) => 0.0,
+            (CameraKind::Pinhole, true) => -horizon_dip(self.altitude_km * KM).to_degrees(),
+            (CameraKind::Fisheye, false) => 90.0,
+            (CameraKind::Fisheye, true) => -90.0,
+        });
+        let vertical = self.camera == CameraKind::Fisheye && elevation.abs() == 90.0;
+        (self.view_azimuth_deg.unwrap_or(if vertical { 0.0 } else { self.sun_azimuth_deg }), elevation)
+    }
+
+    /// The camera.
+    #[must_use]
+    pub fn camera(&self) -> Camera {
+        let field_of_view = self.field_of_view_deg().to_radians();
+        let projection = match self.camera {
+            CameraKind::Fisheye => Projection::Fisheye { field_of_view },
+            CameraKind::Pinhole => Projection::Pinhole { field_of_view },
+            CameraKind::Latlong => Projection::LatLong,
+        };
+        let (width, height) = self.size();
+        let (azimuth, elevation) = self.view_deg();
+        Camera::new(projection, width, height, azimuth.to_radians(), elevation.to_radians())
+    }
+
+    /// Albedo of the ground at each wavelength.
+    ///
+    /// # Errors
+    /// [`SceneError::Unknown`] for a ground that the data do not have, [`SceneError::Ground`]
+    /// for a wavelength that its spectrum does not reach.
+    pub fn albedo_spectrum(&self, data: &Data) -> Result<Vec<f64>, SceneError> {
+        let wavelengths_nm = self.wavelengths_nm.nm();
+        let name = match &self.albedo {
+            Albedo::Grey(value) => return Ok(vec![*value; wavelengths_nm.len()]),
+            Albedo::Ground(name) => name,
+        };
+        let grounds = &data.ground_albedo.spectra;
+        let Some(spectrum) = grounds.get(name) else {
+            return Err(SceneError::unknown("albedo", name, grounds.keys().map(String::as_str)));
+        };
+        let at = |&nm: &f64| spectrum.at(nm).map_err(|source| SceneError::Ground { name: name.clone(), source });
+        wavelengths_nm.iter().map(at).collect()
+    }
+}
+
+/// How far the horizon lies below the horizontal in radians, seen from `altitude_m`:
+/// sin dip = sqrt(h (2R + h)) / (R + h).
+fn horizon_dip(altitude_m: f64) -> f64 {
+    let radius = EARTH_RADIUS_M + altitude_m;
+    ((altitude_m * (EARTH_RADIUS_M + radius)).sqrt() / radius).asin()
+}
+
+/// A number is grey, anything else the name of a ground.
+impl FromStr for Albedo {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(text.parse().map_or_else(|_| Self::Ground(text.into()), Self::Grey))
+    }
+}
+
+impl std::fmt::Display for Albedo {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Grey(value) => value.fmt(f),
+            Self::Ground(name) => f.write_str(name),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_of_a_scene_reads_back_as_the_same_picture() {
+        let scene = Scene { albedo: Albedo::Ground("ocean".into()), error: Some(0.02), ..Scene::default() };
+        let read = Scene::from_json(&scene.to_json()).expect("reads");
+        assert_eq!(read, scene.resolved());
+        assert_eq!(read.camera(), scene.camera());
+    }
+
+    #[test]
+    fn a_short_scene_has_defaults_and_an_unknown_key_is_named() {
+        let scene = Scene::from_json(r#"{"month": 3, "albedo": 0.5}"#).expect("reads");
+        assert_eq!(scene, Scene { month: 3, albedo: Albedo::Grey(0.5), ..Scene::default() });
+        let error = Scene::from_json(r#"{"sun_elevaton_deg": 3}"#).expect_err("unknown").to_string();
+        assert!(error.contains("sun_elevaton_deg") && error.contains("line 1"), "{error}");
+    }
+
+    #[test]
+    fn views_have_the_documented_defaults() {
+        let view = |scene: Scene| scene.view_deg();
+        assert_eq!(view(Scene::default()), (0.0, 90.0));
+        let space = Scene { altitude_km: 400.0, ..Scene::default() };
+        assert_eq!(view(space.clone()), (0.0, -90.0));
+        assert_eq!(view(Scene { camera: CameraKind::Pinhole, ..Scene::default() }), (180.0, 0.0));
+        let (_, limb) = view(Scene { camera: CameraKind::Pinhole, ..space });
+        // acos(6371 / 6771) = 19.79 degrees.
+        assert!((limb + 19.79).abs() < 0.01, "{limb}");
+        assert_eq!(Scene { camera: CameraKind::Latlong, ..Scene::default() }.size(), (512, 256));
+    }
+}

@@ -1,0 +1,190 @@
+//! What a scene may say.
+
+use super::{Albedo, Biome, CameraKind, Scene, nearest};
+use crate::film::Film;
+use crate::spectrum::SpectrumError;
+use tables::TableError;
+
+/// The largest width and height in pixels.
+const MAX_SIZE: f64 = 16_384.0;
+
+/// The most memory that a film may take: 16 GiB.
+const MAX_FILM_BYTES: u64 = 16 << 30;
+
+/// Why a scene is refused.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// A number outside its range.
+    #[error("{what} is {value}; {low} to {high}{unit} is possible")]
+    OutOfRange {
+        /// The flag without its dashes.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// The least.
+        low: f64,
+        /// The most.
+        high: f64,
+        /// Unit after a space, or nothing.
+        unit: &'static str,
+    },
+    /// A name that nothing has.
+    #[error("{what} {name:?} is not known{hint}")]
+    Unknown {
+        /// The flag without its dashes.
+        what: &'static str,
+        /// The name.
+        name: String,
+        /// The nearest known name, or all of them.
+        hint: String,
+    },
+    /// A choice that this version cannot render, or two that exclude each other.
+    #[error("{0}")]
+    Refused(String),
+    /// Wavelengths that cannot be used.
+    #[error(transparent)]
+    Wavelengths(#[from] SpectrumError),
+    /// A ground whose spectrum does not reach a wavelength.
+    #[error("albedo {name}: {source}")]
+    Ground {
+        /// The ground.
+        name: String,
+        /// What the table says.
+        source: TableError,
+    },
+    /// Text that is no scene.
+    #[error("not a scene: {0}")]
+    Malformed(#[from] serde_json::Error),
+}
+
+impl SceneError {
+    /// [`SceneError::Unknown`] with the nearest of the `known` names, or all of them if none is near.
+    pub(super) fn unknown<'a>(
+        what: &'static str,
+        name: &str,
+        known: impl IntoIterator<Item = &'a str> + Clone,
+    ) -> Self {
+        let hint = match nearest(name, known.clone()) {
+            Some(near) => format!("; did you mean {near}?"),
+            None => format!("; known are {}", known.into_iter().collect::<Vec<_>>().join(", ")),
+        };
+        Self::Unknown { what, name: name.into(), hint }
+    }
+}
+
+impl Scene {
+    /// Checks every number against its range and every choice against the others.
+    ///
+    /// # Errors
+    /// The [`SceneError`] of the first thing that is wrong.
+    pub fn validate(&self) -> Result<(), SceneError> {
+        if self.biome != Biome::None {
+            return Err(SceneError::Refused(
+                "this version renders molecules and ozone only: leave out --biome, or say none".into(),
+            ));
+        }
+        range("altitude", self.altitude_km, 0.0, 1e6, " km")?;
+        range("top", self.top_km, 1.0, 120.0, " km")?;
+        range("sun-elevation", self.sun_elevation_deg, -90.0, 90.0, " degrees")?;
+        range("sun-azimuth", self.sun_azimuth_deg, -360.0, 360.0, " degrees")?;
+        range("month", f64::from(self.month), 1.0, 12.0, "")?;
+        range("latitude", self.latitude_deg, -90.0, 90.0, " degrees")?;
+        optional("ozone", self.ozone_du, 0.0, 1000.0, " DU")?;
+        if let Albedo::Grey(value) = self.albedo {
+            range("albedo", value, 0.0, 1.0, "")?;
+        }
+        self.validate_view()?;
+        optional("exposure", self.exposure_ev, -30.0, 30.0, " EV")?;
+        optional("spp", self.spp.map(f64::from), 1.0, 1e6, "")?;
+        optional("error", self.error, 1e-5, 1.0, "")
+    }
+
+    fn validate_view(&self) -> Result<(), SceneError> {
+        match self.camera {
+            CameraKind::Fisheye => optional("fov", self.fov_deg, 1.0, 360.0, " degrees for a fisheye")?,
+            CameraKind::Pinhole => optional("fov", self.fov_deg, 0.01, 179.0, " degrees for a pinhole")?,
+            CameraKind::Latlong if self.fov_deg.is_some() || self.view_elevation_deg.is_some() => {
+                return Err(SceneError::Refused(
+                    "a latlong picture always shows the whole sphere: leave out --fov and --view-elevation".into(),
+                ));
+            }
+            CameraKind::Latlong => {}
+        }
+        optional("view-azimuth", self.view_azimuth_deg, -360.0, 360.0, " degrees")?;
+        optional("view-elevation", self.view_elevation_deg, -90.0, 90.0, " degrees")?;
+        let (width, height) = self.size();
+        range("width", f64::from(width), 1.0, MAX_SIZE, " pixels")?;
+        range("height", f64::from(height), 1.0, MAX_SIZE, " pixels")?;
+        let bytes = Film::bytes(width, height, self.wavelengths_nm.nm().len());
+        if bytes > MAX_FILM_BYTES {
+            let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
+            return Err(SceneError::Refused(format!(
+                "{width} x {height} pixels at {} wavelengths take {:.0} GiB; {:.0} GiB are possible",
+                self.wavelengths_nm.nm().len(),
+                gib(bytes).ceil(),
+                gib(MAX_FILM_BYTES)
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// Refuses what is not in `low..=high`, NaN included.
+fn range(what: &'static str, value: f64, low: f64, high: f64, unit: &'static str) -> Result<(), SceneError> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(SceneError::OutOfRange { what, value, low, high, unit })
+}
+
+fn optional(what: &'static str, value: Option<f64>, low: f64, high: f64, unit: &'static str) -> Result<(), SceneError> {
+    value.map_or(Ok(()), |value| range(what, value, low, high, unit))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(change: impl FnOnce(&mut Scene)) -> String {
+        let mut scene = Scene::default();
+        change(&mut scene);
+        scene.validate().expect_err("refused").to_string()
+    }
+
+    #[test]
+    fn the_default_scene_is_valid() {
+        Scene::default().validate().expect("valid");
+        Scene { altitude_km: 35_786.0, ..Scene::default() }.validate().expect("space is fine");
+    }
+
+    #[test]
+    fn a_number_outside_is_refused_with_the_range() {
+        assert_eq!(refusal(|s| s.sun_elevation_deg = 91.0), "sun-elevation is 91; -90 to 90 degrees is possible");
+        assert_eq!(refusal(|s| s.altitude_km = -0.001), "altitude is -0.001; 0 to 1000000 km is possible");
+        assert_eq!(refusal(|s| s.month = 13), "month is 13; 1 to 12 is possible");
+        assert_eq!(refusal(|s| s.albedo = Albedo::Grey(1.1)), "albedo is 1.1; 0 to 1 is possible");
+        assert_eq!(refusal(|s| s.fov_deg = Some(361.0)), "fov is 361; 1 to 360 degrees for a fisheye is possible");
+        assert_eq!(refusal(|s| s.width = Some(0)), "width is 0; 1 to 16384 pixels is possible");
+        for nan in [f64::NAN, f64::INFINITY] {
+            assert!(refusal(|s| s.latitude_deg = nan).contains("-90 to 90"));
+            assert!(refusal(|s| s.ozone_du = Some(nan)).contains("0 to 1000 DU"));
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_rendered_is_refused_with_a_sentence() {
+        assert!(refusal(|s| s.biome = Biome::Urban).contains("molecules and ozone only"));
+        let latlong = |s: &mut Scene| (s.camera, s.fov_deg) = (CameraKind::Latlong, Some(90.0));
+        assert!(refusal(latlong).contains("whole sphere"));
+        let large = |s: &mut Scene| (s.width, s.height) = (Some(16_384), Some(16_384));
+        assert!(refusal(large).contains("GiB"));
+    }
+
+    #[test]
+    fn an_unknown_name_is_answered_with_the_nearest() {
+        let known = ["dry-soil", "ocean"];
+        let text = |name| SceneError::unknown("albedo", name, known).to_string();
+        assert_eq!(text("oceann"), "albedo \"oceann\" is not known; did you mean ocean?");
+        assert_eq!(text("q"), "albedo \"q\" is not known; known are dry-soil, ocean");
+    }
+}

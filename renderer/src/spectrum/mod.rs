@@ -1,0 +1,7 @@
+//! Wavelengths: which are simulated, how they are carried, and what colour they make.
+
+mod colour;
+mod wavelengths;
+
+pub use colour::{Colour, linear_srgb, luminance};
+pub use wavelengths::{MAX_WAVELENGTHS, Packet, SpectrumError, Wavelengths};

@@ -1,0 +1,67 @@
+//! Columns of numbers as a data frame, and its CSV.
+
+use polars::prelude::{Column, CsvWriter, DataFrame, PolarsError, SerWriter};
+
+/// Significant digits of a number in a CSV: more than any measured value has, fewer than change
+/// with the last bits of a machine.
+const DIGITS: usize = 7;
+
+/// Named columns of equal length. What a figure shows, in the units that the names end with.
+#[derive(Debug, Clone)]
+pub struct Frame(DataFrame);
+
+impl Frame {
+    /// A frame of columns in their order. NaN stands for a missing value; the others are rounded to
+    /// seven significant digits.
+    ///
+    /// # Errors
+    /// [`PolarsError`] if lengths differ or a name is used twice.
+    pub fn new<N: Into<String>>(columns: impl IntoIterator<Item = (N, Vec<f64>)>) -> Result<Self, PolarsError> {
+        let columns = columns.into_iter().map(|(name, values)| {
+            let values: Vec<Option<f64>> = values.into_iter().map(|v| (!v.is_nan()).then(|| rounded(v))).collect();
+            Column::new(name.into().into(), values)
+        });
+        Ok(Self(DataFrame::new_infer_height(columns.collect())?))
+    }
+
+    /// The columns.
+    #[must_use]
+    pub fn data(&self) -> &DataFrame {
+        &self.0
+    }
+
+    /// The frame as CSV: a header row of the names, then the rows; a missing value is empty.
+    ///
+    /// # Errors
+    /// [`PolarsError`].
+    pub fn csv(&self) -> Result<Vec<u8>, PolarsError> {
+        let mut bytes = Vec::new();
+        CsvWriter::new(&mut bytes).finish(&mut self.0.clone())?;
+        Ok(bytes)
+    }
+}
+
+/// `value` to [`DIGITS`] significant digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_is_written_with_its_names_and_gaps() {
+        let frame = Frame::new([("x_m", vec![0.0, 1.0 / 3.0]), ("y_m2", vec![f64::NAN, 4.5e-31])]).expect("equal");
+        let text = String::from_utf8(frame.csv().expect("written")).expect("text");
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines, ["x_m,y_m2", "0.0,", "0.3333333,4.5e-31"]);
+        assert_eq!(frame.data().height(), 2);
+    }
+
+    #[test]
+    fn columns_that_do_not_fit_are_refused() {
+        assert!(Frame::new([("x", vec![0.0]), ("y", vec![])]).is_err());
+        assert!(Frame::new([("x", vec![0.0]), ("x", vec![1.0])]).is_err());
+    }
+}

@@ -1,0 +1,159 @@
+//! Figures of how air and ozone scatter and absorb.
+
+use super::colours::{BLACK, BLUE, GREEN, ORANGE, VERMILION};
+use super::model::{Axis, Curve, Figure, Key, Panel, Stroke};
+use super::{Data, Plot, PlotError, Settings, against_km, points};
+use crate::frame::Frame;
+use crate::profile::ozone::trapezoidal;
+use tables::units::{TOP_ALTITUDE_M, WAVELENGTH_RANGE_NM};
+use tables::{TableError, views};
+
+/// Temperatures in K at which the cross-section of ozone is shown: warm, and the stratosphere's.
+const TEMPERATURES_K: [f64; 2] = [293.0, 223.0];
+
+/// Step in m of the altitudes at which coefficients are computed and integrated.
+const STEP_M: u32 = 100;
+
+/// Whole wavelengths in nm from one end of the tables to the other.
+fn wavelengths() -> Vec<f64> {
+    let (low, high) = WAVELENGTH_RANGE_NM;
+    (low.ceil() as u32..=high.floor() as u32).map(f64::from).collect()
+}
+
+fn wavelength_axis() -> Axis {
+    Axis::linear("wavelength / nm", WAVELENGTH_RANGE_NM.0, WAVELENGTH_RANGE_NM.1, 100.0)
+}
+
+/// Rayleigh scattering and ozone absorption cross-sections against wavelength.
+pub(super) fn cross_sections(data: Data<'_>) -> Result<Plot, PlotError> {
+    let (rayleigh, ozone) = (data.rayleigh()?, data.ozone_cross_section()?);
+    let nm = wavelengths();
+    let scattering: Vec<f64> = nm.iter().map(|&w| rayleigh.cross_section_m2.at(w)).collect::<Result<_, _>>()?;
+    let absorption = |kelvin: f64| nm.iter().map(|&w| ozone.cross_section_m2(w, kelvin)).collect::<Result<Vec<_>, _>>();
+    let (warm, cold) = (absorption(TEMPERATURES_K[0])?, absorption(TEMPERATURES_K[1])?);
+    let curves = vec![
+        Curve::new("ozone, absorption, 293 K", VERMILION, points(&nm, &warm)),
+        Curve::new("ozone, absorption, 223 K", ORANGE, points(&nm, &cold)).stroke(Stroke::Dashed),
+        Curve::new("air, Rayleigh scattering", BLUE, points(&nm, &scattering)),
+    ];
+    let panel =
+        Panel::new(wavelength_axis(), Axis::logarithmic("cross-section of a molecule / m²", 1e-32, 1e-22, 1), curves);
+    let frame = Frame::new([
+        ("wavelength_nm", nm),
+        ("rayleigh_scattering_m2", scattering),
+        ("ozone_absorption_293k_m2", warm),
+        ("ozone_absorption_223k_m2", cold),
+    ])?;
+    let title = "Cross-sections of molecules".into();
+    Ok(Plot { figure: Figure { title, rows: vec![vec![panel]] }, frame })
+}
+
+/// Air and ozone of one month and latitude.
+struct Column {
+    air: views::StandardAtmosphere,
+    ozone: views::OzoneProfile,
+    rayleigh: views::Rayleigh,
+    absorption: views::OzoneCrossSection,
+    /// m.
+    altitudes: Vec<f64>,
+}
+
+impl Column {
+    fn new(data: Data<'_>, settings: &Settings) -> Result<Self, TableError> {
+        Ok(Self {
+            air: data.air()?,
+            ozone: data.ozone_profiles()?.profile(settings.month, settings.latitude_deg)?,
+            rayleigh: data.rayleigh()?,
+            absorption: data.ozone_cross_section()?,
+            altitudes: (0..=TOP_ALTITUDE_M as u32 / STEP_M).map(|i| f64::from(i * STEP_M)).collect(),
+        })
+    }
+
+    /// Molecular scattering coefficient N(z) sigma(lambda) in m^-1 at each altitude.
+    fn scattering(&self, wavelength_nm: f64) -> Result<Vec<f64>, TableError> {
+        let sigma = self.rayleigh.cross_section_m2.at(wavelength_nm)?;
+        self.altitudes.iter().map(|&z| Ok(self.air.number_density_m3.at(z)? * sigma)).collect()
+    }
+
+    /// Ozone absorption coefficient N_O3(z) sigma(lambda, T(z)) in m^-1 at each altitude.
+    fn absorption(&self, wavelength_nm: f64) -> Result<Vec<f64>, TableError> {
+        let at = |z: f64| -> Result<f64, TableError> {
+            let kelvin = self.air.temperature_k.at(z)?;
+            let sigma = self.absorption.cross_section_m2(wavelength_nm, kelvin)?;
+            Ok(self.ozone.number_density_m3.at(z)? * sigma)
+        };
+        self.altitudes.iter().map(|&z| at(z)).collect()
+    }
+}
+
+/// Scattering, absorption and extinction coefficients against altitude at one wavelength.
+pub(super) fn against_altitude(data: Data<'_>, settings: &Settings) -> Result<Plot, PlotError> {
+    let column = Column::new(data, settings)?;
+    let species = [
+        ("scattering by molecules", "molecular_scattering_per_m", BLUE, column.scattering(settings.wavelength_nm)?),
+        ("absorption by ozone", "ozone_absorption_per_m", VERMILION, column.absorption(settings.wavelength_nm)?),
+    ];
+    let z = &column.altitudes;
+    let extinction = sums(species.iter().map(|(_, _, _, values)| values), z.len());
+    let mut curves = vec![Curve::new("extinction", BLACK, against_km(&extinction, z)).stroke(Stroke::Dashed)];
+    let mut columns = vec![("altitude_m", z.clone())];
+    for (name, column, colour, values) in species {
+        curves.insert(curves.len() - 1, Curve::new(name, colour, against_km(&values, z)));
+        columns.push((column, values));
+    }
+    columns.push(("extinction_per_m", extinction));
+    let panel = Panel::new(
+        Axis::logarithmic("coefficient / m⁻¹", 1e-10, 1e-3, 1),
+        Axis::linear("altitude / km", 0.0, 80.0, 10.0),
+        curves,
+    );
+    let title = format!("Coefficients at {} nm, {}", settings.wavelength_nm, settings.place());
+    Ok(Plot { figure: Figure { title, rows: vec![vec![panel]] }, frame: Frame::new(columns)? })
+}
+
+/// Vertical optical depth against wavelength.
+pub(super) fn optical_depth(data: Data<'_>, settings: &Settings) -> Result<Plot, PlotError> {
+    let column = Column::new(data, settings)?;
+    let nm = wavelengths();
+    // Steps of 100 m overestimate an exponential of 7 km by 2e-5.
+    let depth = |values: Result<Vec<f64>, TableError>| Ok(trapezoidal(&column.altitudes, &values?));
+    let molecules: Vec<f64> = nm.iter().map(|&w| depth(column.scattering(w))).collect::<Result<_, TableError>>()?;
+    let ozone: Vec<f64> = nm.iter().map(|&w| depth(column.absorption(w))).collect::<Result<_, TableError>>()?;
+    let total = sums([&molecules, &ozone], nm.len());
+    let transmittance: Vec<f64> = total.iter().map(|depth| (-depth).exp()).collect();
+    let panel = Panel::new(
+        wavelength_axis(),
+        Axis::logarithmic("vertical optical depth", 1e-4, 1e1, 1),
+        vec![
+            Curve::new("scattering by molecules", BLUE, points(&nm, &molecules)),
+            Curve::new("absorption by ozone", VERMILION, points(&nm, &ozone)),
+            Curve::new("both", BLACK, points(&nm, &total)).stroke(Stroke::Dashed),
+        ],
+    );
+    let below = Panel::new(
+        wavelength_axis(),
+        Axis::linear("vertical transmittance", 0.0, 1.0, 0.2),
+        vec![Curve::new("", GREEN, points(&nm, &transmittance))],
+    )
+    .key(Key::None);
+    let title = format!("From the ground to 120 km, {}, {:.0} DU of ozone", settings.place(), column.ozone.column_du);
+    let frame = Frame::new([
+        ("wavelength_nm", nm),
+        ("molecular_scattering", molecules),
+        ("ozone_absorption", ozone),
+        ("total", total),
+        ("transmittance", transmittance),
+    ])?;
+    Ok(Plot { figure: Figure { title, rows: vec![vec![panel.share(1.3), below]] }, frame })
+}
+
+/// Sums, value by value.
+fn sums<'a>(parts: impl IntoIterator<Item = &'a Vec<f64>>, length: usize) -> Vec<f64> {
+    let mut sum = vec![0.0; length];
+    for part in parts {
+        for (total, value) in sum.iter_mut().zip(part) {
+            *total += value;
+        }
+    }
+    sum
+}

@@ -1,0 +1,100 @@
+//! A figure as the bytes of an SVG or PNG file.
+
+use super::PlotError;
+use super::canvas::{Canvas, FINENESS};
+use super::layout::{SIZE, draw};
+use super::model::Figure;
+use plotters::backend::{BitMapBackend, SVGBackend};
+
+/// Pixels of a bitmap per metre: 200 per inch, so that a picture is 203 mm wide.
+const PIXELS_PER_METRE: u32 = 7874;
+
+/// The figure as an SVG document, 1600 by 1000 units of the viewer.
+///
+/// # Errors
+/// [`PlotError::Drawing`].
+pub fn svg(figure: &Figure) -> Result<Vec<u8>, PlotError> {
+    let (width, height) = (SIZE.0 * FINENESS, SIZE.1 * FINENESS);
+    let mut text = String::new();
+    let mut canvas = Canvas::new(SVGBackend::with_string(&mut text, (width, height)), false)?;
+    draw(&mut canvas, figure)?;
+    canvas.finish()?;
+    // The device units stay in the view box; the picture itself has the size of the bitmap.
+    let device = format!("width=\"{width}\" height=\"{height}\"");
+    let picture = format!("width=\"{}\" height=\"{}\" stroke-linejoin=\"round\"", SIZE.0, SIZE.1);
+    Ok(text.replacen(&device, &picture, 1).into_bytes())
+}
+
+/// The figure as a PNG image of 1600 by 1000 pixels, each the mean of the finer ones drawn.
+///
+/// # Errors
+/// [`PlotError::Drawing`].
+pub fn png(figure: &Figure) -> Result<Vec<u8>, PlotError> {
+    let (width, height) = (SIZE.0 * FINENESS, SIZE.1 * FINENESS);
+    let mut fine = vec![255_u8; width as usize * height as usize * 3];
+    let mut canvas = Canvas::new(BitMapBackend::with_buffer(&mut fine, (width, height)), true)?;
+    draw(&mut canvas, figure)?;
+    canvas.finish()?;
+
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, SIZE.0, SIZE.1);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    let unit = png::Unit::Meter;
+    encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: PIXELS_PER_METRE, yppu: PIXELS_PER_METRE, unit }));
+    let mut writer = encoder.write_header().map_err(PlotError::drawing)?;
+    writer.write_image_data(&reduced(&fine)).map_err(PlotError::drawing)?;
+    writer.finish().map_err(PlotError::drawing)?;
+    Ok(bytes)
+}
+
+/// Means over squares of pixels.
+fn reduced(fine: &[u8]) -> Vec<u8> {
+    let n = FINENESS as usize;
+    let row = SIZE.0 as usize * n * 3;
+    let mut coarse = Vec::with_capacity(fine.len() / (n * n));
+    for band in fine.chunks_exact(row * n) {
+        for x in 0..SIZE.0 as usize {
+            for channel in 0..3 {
+                let sum: u32 = (0..n * n).map(|i| u32::from(band[(i / n) * row + (x * n + i % n) * 3 + channel])).sum();
+                coarse.push(((sum + (n * n / 2) as u32) / (n * n) as u32) as u8);
+            }
+        }
+    }
+    coarse
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::colours::BLUE;
+    use crate::plot::model::{Axis, Curve, Panel};
+
+    fn figure() -> Figure {
+        let curve = Curve::new("a line", BLUE, vec![(0.0, 0.0), (1.0, 1.0)]);
+        let panel = Panel::new(Axis::linear("x", 0.0, 1.0, 0.5), Axis::linear("y < z", 0.0, 1.0, 0.5), vec![curve]);
+        Figure { title: "title".into(), rows: vec![vec![panel]] }
+    }
+
+    #[test]
+    fn a_bitmap_is_white_with_ink_on_it_and_always_the_same() {
+        let bytes = png(&figure()).expect("drawn");
+        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+        let info = reader.next_frame(&mut pixels).expect("decoded");
+        assert_eq!((info.width, info.height), SIZE);
+        let white = pixels.iter().filter(|&&v| v == 255).count() as f64 / pixels.len() as f64;
+        assert!((0.9..0.999).contains(&white), "{white} of it is white");
+        assert_eq!(bytes, png(&figure()).expect("drawn"));
+    }
+
+    #[test]
+    fn a_vector_picture_has_its_texts() {
+        let text = String::from_utf8(svg(&figure()).expect("drawn")).expect("UTF-8");
+        assert!(text.starts_with("<svg width=\"1600\" height=\"1000\"") && text.trim_end().ends_with("</svg>"));
+        for expected in ["a line", "title", "y &lt; z", "polyline", "0 0 4800 3000"] {
+            assert!(text.contains(expected), "{expected:?} is not in {text}");
+        }
+    }
+}
