@@ -50,7 +50,8 @@ fn ozone_in_the_medium_is_the_column_that_is_asked_for() {
 #[test]
 fn arosa_in_april_has_384_dobson_units() {
     // Duetsch 1974. (The tables that this project corrects acted as 4025 DU.)
-    let air = Air::new(&data(), &AirSettings { month: 4, ozone_source: OzoneSource::Arosa, ..settings() }).expect("air");
+    let air =
+        Air::new(&data(), &AirSettings { month: 4, ozone_source: OzoneSource::Arosa, ..settings() }).expect("air");
     assert_eq!(air.ozone_du(), 384.0);
 }
 

@@ -37,7 +37,9 @@ fn every_damaged_table_is_named_with_its_damage() {
         let mut flipped = whole.clone();
         let last = flipped.len() - 1;
         flipped[last] ^= 0x10;
-        for (bytes, word) in [(&flipped[..], "damaged"), (&whole[..whole.len() / 2], "truncated"), (&b"P3"[..], "not an")] {
+        for (bytes, word) in
+            [(&flipped[..], "damaged"), (&whole[..whole.len() / 2], "truncated"), (&b"P3"[..], "not an")]
+        {
             std::fs::write(&path, bytes).expect("written");
             let refusal = refusal(&folder);
             assert!(refusal.contains(&kind.file_name()) && refusal.contains(word), "{word}: {refusal}");

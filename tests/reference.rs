@@ -9,8 +9,7 @@ use std::collections::BTreeMap;
 #[test]
 fn radiances_agree_with_other_programs() {
     let path = root().join("tests/reference/radiances.json");
-    let text: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(&path).expect("read")).expect("JSON");
+    let text: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).expect("read")).expect("JSON");
     let expected: BTreeMap<&str, (f64, f64)> = text["cases"]
         .as_array()
         .expect("cases")

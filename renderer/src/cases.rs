@@ -100,7 +100,8 @@ pub fn run(suite: &Suite, settings: &Settings, progress: &(dyn Fn(usize, usize) 
 pub fn to_csv(answers: &[Answer]) -> String {
     let mut text = String::from("id,value,stderr\n");
     for Answer { id, value, stderr, .. } in answers {
-        let quoted = if id.contains([',', '"', '\n']) { format!("\"{}\"", id.replace('"', "\"\"")) } else { id.clone() };
+        let quoted =
+            if id.contains([',', '"', '\n']) { format!("\"{}\"", id.replace('"', "\"\"")) } else { id.clone() };
         text.push_str(&format!("{quoted},{value:e},{stderr:e}\n"));
     }
     text
@@ -143,7 +144,9 @@ fn estimate(id: &str, estimand: &Estimand, settings: &Settings, index: u64) -> R
             loop {
                 extend(&mut run, settings.seed, target.min(MOST_PATHS));
                 if run.mean == 0.0 && run.count >= DARK_PATHS {
-                    return Err(format!("no light on any of {DARK_PATHS} paths: zero, or too dark for a relative error"));
+                    return Err(format!(
+                        "no light on any of {DARK_PATHS} paths: zero, or too dark for a relative error"
+                    ));
                 }
                 let reached = run.mean != 0.0 && run.stderr() <= error * run.mean.abs();
                 if reached || run.count >= MOST_PATHS {

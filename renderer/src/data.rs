@@ -1,7 +1,9 @@
 //! The tables of `data/`, read once.
 
 use std::path::{Path, PathBuf};
-use tables::views::{GroundAlbedo, Observer, OzoneCrossSection, OzoneLayers, OzoneProfiles, Rayleigh, StandardAtmosphere, Sun};
+use tables::views::{
+    GroundAlbedo, Observer, OzoneCrossSection, OzoneLayers, OzoneProfiles, Rayleigh, StandardAtmosphere, Sun,
+};
 use tables::{Kind, Table, TableError, file};
 
 /// Every table that a picture can need, and the identity of each for its receipt.
@@ -76,7 +78,8 @@ impl Data {
             identities.push(Identity { file: name, title: table.title.clone(), checksum });
             Ok(table)
         };
-        let mut view = |kind: Kind| -> Result<(Table, PathBuf), DataError> { Ok((read(kind)?, folder.join(kind.file_name()))) };
+        let mut view =
+            |kind: Kind| -> Result<(Table, PathBuf), DataError> { Ok((read(kind)?, folder.join(kind.file_name()))) };
         macro_rules! load {
             ($view:ident, $kind:ident) => {{
                 let (table, path) = view(Kind::$kind)?;

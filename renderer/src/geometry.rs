@@ -212,7 +212,11 @@ mod tests {
                 let ray = Ray::new(EARTH, Place::above(altitude), direction(zenith));
                 for pair in segments.windows(2) {
                     assert_eq!(pair[0].end_m, pair[1].start_m, "gap at {altitude} m, {zenith} degrees");
-                    assert_eq!(pair[0].layer.abs_diff(pair[1].layer), 1, "layer skipped at {altitude} m, {zenith} degrees");
+                    assert_eq!(
+                        pair[0].layer.abs_diff(pair[1].layer),
+                        1,
+                        "layer skipped at {altitude} m, {zenith} degrees"
+                    );
                 }
                 for s in &segments {
                     let middle = ray.altitude_m(0.5 * (s.start_m + s.end_m));

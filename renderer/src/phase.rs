@@ -48,7 +48,7 @@ impl<const L: usize> Tabulated<L> {
     pub fn new(cosines: Vec<f64>, mut values: Vec<[f64; L]>) -> Option<Self> {
         let ends = cosines.len() >= 2 && cosines[0] == -1.0 && cosines[cosines.len() - 1] == 1.0;
         let sound = values.iter().flatten().all(|v| v.is_finite() && *v >= 0.0);
-        if !ends || !sound || cosines.len() != values.len() || cosines.windows(2).any(|w| !(w[0] < w[1])) {
+        if !ends || !sound || cosines.len() != values.len() || !cosines.windows(2).all(|w| w[0] < w[1]) {
             return None;
         }
         let mut cumulative = vec![[0.0; L]; cosines.len()];
@@ -231,8 +231,7 @@ mod tests {
     /// 2 pi times the integral of f(c) from -1 to `end`, by Simpson's rule on 400 cells between the places
     /// where one of the phase functions above has a corner or a peak: exact for lines, 1e-9 for the rest.
     fn integral(end: f64, f: impl Fn(f64) -> f64) -> f64 {
-        const CORNERS: [f64; 13] =
-            [-1.0, -0.999, -0.98, -0.9, -0.3, -0.1, 0.4, 0.9, 0.98, 0.99, 0.996, 0.9999, 1.0];
+        const CORNERS: [f64; 13] = [-1.0, -0.999, -0.98, -0.9, -0.3, -0.1, 0.4, 0.9, 0.98, 0.99, 0.996, 0.9999, 1.0];
         const CELLS: u32 = 400;
         let cell = |a: f64, b: f64| (b - a) / 6.0 * (f(a) + 4.0 * f(0.5 * (a + b)) + f(b));
         let stretch = |a: f64, b: f64| -> f64 {
@@ -287,7 +286,7 @@ mod tests {
             let mut counts = [0.0_f64; CELLS];
             let mut sampler = crate::sampling::Sampler::new(11, k as u64, 0);
             for _ in 0..N {
-                let c = phase.sample(0, sampler.next()).cosine;
+                let c = phase.sample(0, sampler.uniform()).cosine;
                 counts[edges.partition_point(|&e| e <= c)] += 1.0;
             }
             let expected = f64::from(N) / CELLS as f64;

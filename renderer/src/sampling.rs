@@ -24,14 +24,14 @@ impl Sampler {
 
     /// A uniform number in [0, 1): 53 bits.
     #[inline]
-    pub fn next(&mut self) -> f64 {
+    pub fn uniform(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
     }
 
     /// Two uniform numbers in [0, 1).
     #[inline]
-    pub fn next_2d(&mut self) -> [f64; 2] {
-        [self.next(), self.next()]
+    pub fn uniform_2d(&mut self) -> [f64; 2] {
+        [self.uniform(), self.uniform()]
     }
 }
 
@@ -68,7 +68,7 @@ mod tests {
     fn equal_arguments_give_equal_streams_and_others_do_not() {
         let stream = |seed, pixel, sample| {
             let mut sampler = Sampler::new(seed, pixel, sample);
-            [(); 4].map(|()| sampler.next())
+            [(); 4].map(|()| sampler.uniform())
         };
         assert_eq!(stream(1, 2, 3), stream(1, 2, 3));
         for other in [stream(2, 2, 3), stream(1, 3, 3), stream(1, 2, 4), stream(1, 3, 2)] {
@@ -80,7 +80,7 @@ mod tests {
     fn first_numbers_of_neighbouring_pixels_are_uniform_and_independent() {
         // Mean 1/2 and mean product of neighbours 1/4; five standard errors of n = 20000.
         let n = 20_000_u32;
-        let first = |pixel: u32| Sampler::new(7, u64::from(pixel), 0).next();
+        let first = |pixel: u32| Sampler::new(7, u64::from(pixel), 0).uniform();
         let (mut sum, mut product) = (0.0, 0.0);
         for pixel in 0..n {
             sum += first(pixel);

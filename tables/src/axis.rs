@@ -147,7 +147,8 @@ impl Axis {
     /// between the nodes of an [`Interpolation::Node`] axis, and for NaN.
     pub fn locate(&self, x: f64) -> Result<Option<Position>, TableError> {
         let (low, high) = self.range();
-        let refuse = || TableError::OutOfRange { axis: self.name.clone(), value: x, low, high, unit: self.unit.clone() };
+        let refuse =
+            || TableError::OutOfRange { axis: self.name.clone(), value: x, low, high, unit: self.unit.clone() };
         if x.is_nan() {
             return Err(refuse());
         }

@@ -13,7 +13,9 @@
 //!
 //! and nothing after it. `docs/table-format.md` has the header's keys.
 
-use crate::{Axis, Field, Interpolation, Kind, Outside, Precision, Provenance, Scale, Spacing, Table, TableError, Tolerance};
+use crate::{
+    Axis, Field, Interpolation, Kind, Outside, Precision, Provenance, Scale, Spacing, Table, TableError, Tolerance,
+};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -230,7 +232,13 @@ fn split(bytes: &[u8]) -> Result<(&[u8], &[u8]), TableError> {
 }
 
 /// `length` numbers of the payload from `offset`.
-fn numbers(payload: &[u8], offset: usize, length: usize, precision: Precision, name: &str) -> Result<Vec<f64>, TableError> {
+fn numbers(
+    payload: &[u8],
+    offset: usize,
+    length: usize,
+    precision: Precision,
+    name: &str,
+) -> Result<Vec<f64>, TableError> {
     let bytes = length
         .checked_mul(precision.bytes())
         .and_then(|size| offset.checked_add(size))

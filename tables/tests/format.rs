@@ -22,10 +22,7 @@ fn sample() -> Table {
         title: "A table for tests: é".into(),
         axes: vec![
             Axis::new("wavelength", "nm", vec![300.0, 301.5, 310.0]).expect("valid"),
-            Axis::uniform("month", "1", 1.0, 1.0, 2)
-                .expect("valid")
-                .between(Interpolation::Node)
-                .beyond(Outside::Hold),
+            Axis::uniform("month", "1", 1.0, 1.0, 2).expect("valid").between(Interpolation::Node).beyond(Outside::Hold),
         ],
         fields: vec![
             field("a", &["wavelength"], Precision::F64, vec![1.0 / 3.0, -0.0, 1e-300]),

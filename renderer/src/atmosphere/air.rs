@@ -167,9 +167,7 @@ fn ozone_terms(
             term.push(density * dt.powi(power));
         }
     }
-    let axis = Axis::new("altitude", "m", nodes)?
-        .between(profile.axis().interpolation)
-        .beyond(Outside::Zero);
+    let axis = Axis::new("altitude", "m", nodes)?.between(profile.axis().interpolation).beyond(Outside::Zero);
     let [a, b, c] = terms;
     let curve = |values| Curve::new(axis.clone(), Scale::Linear, values);
     Ok([curve(a)?, curve(b)?, curve(c)?])

@@ -30,7 +30,9 @@ pub enum MediumError {
     #[error("{0}")]
     Impossible(String),
     /// The coefficients add up to less than nothing somewhere.
-    #[error("extinction is {value:e} per metre at {altitude_m} m, wavelength number {lane}: a coefficient cannot be negative")]
+    #[error(
+        "extinction is {value:e} per metre at {altitude_m} m, wavelength number {lane}: a coefficient cannot be negative"
+    )]
     Negative {
         /// Sum of the extinction coefficients, m^-1.
         value: f64,
@@ -119,7 +121,9 @@ impl<const L: usize> Medium<L> {
             return Err(MediumError::Impossible(text));
         }
         if !(top_m.is_finite() && top_m > 0.0) {
-            return Err(MediumError::Impossible(format!("the top of the atmosphere must be above the ground, not at {top_m} m")));
+            return Err(MediumError::Impossible(format!(
+                "the top of the atmosphere must be above the ground, not at {top_m} m"
+            )));
         }
         let mut nodes: Vec<f64> = components.iter().flat_map(|c| c.density.axis().nodes.iter().copied()).collect();
         nodes.retain(|&z| z > 0.0 && z < top_m);
@@ -208,7 +212,8 @@ impl<const L: usize> Medium<L> {
     fn combine(&self, densities: &[f64; MAX_COMPONENTS]) -> [f64; L] {
         let mut sum = [0.0; L];
         for (component, density) in self.components.iter().zip(densities) {
-            for ((sum, scattering), absorption) in sum.iter_mut().zip(&component.scattering).zip(&component.absorption) {
+            for ((sum, scattering), absorption) in sum.iter_mut().zip(&component.scattering).zip(&component.absorption)
+            {
                 *sum += density * (scattering + absorption);
             }
         }
@@ -268,7 +273,8 @@ impl<const L: usize> Medium<L> {
                 (linear_bottom[c], linear_top[c]) = (0.0, 0.0);
             }
         }
-        let (lines_bottom, lines_top, exponentials) = (self.combine(&linear_bottom), self.combine(&linear_top), self.combine(&least));
+        let (lines_bottom, lines_top, exponentials) =
+            (self.combine(&linear_bottom), self.combine(&linear_top), self.combine(&least));
         let majorant = std::array::from_fn(|j| at_bottom[j].max(at_top[j]));
         let minorant = std::array::from_fn(|j| lines_bottom[j].min(lines_top[j]) + exponentials[j]);
         (majorant, minorant)
@@ -291,7 +297,9 @@ impl<const L: usize> Medium<L> {
             }
         }
         let largest = depth.iter().copied().fold(0.0, f64::max);
-        let spread = |majorant: &[f64; L], minorant: &[f64; L]| majorant.iter().zip(minorant).map(|(a, b)| a - b).fold(0.0, f64::max);
+        let spread = |majorant: &[f64; L], minorant: &[f64; L]| {
+            majorant.iter().zip(minorant).map(|(a, b)| a - b).fold(0.0, f64::max)
+        };
         let mut start = 0;
         while start < intervals {
             let (mut majorant, mut minorant) = bounds[start];
@@ -351,7 +359,12 @@ mod tests {
     const EARTH: Shape = Shape::Sphere { radius_m: RADIUS };
 
     fn component(density: Curve, scattering: f64, absorption: f64) -> Component<1> {
-        Component { density, scattering: [scattering], absorption: [absorption], phase: Phase::Rayleigh { gamma: [0.0] } }
+        Component {
+            density,
+            scattering: [scattering],
+            absorption: [absorption],
+            phase: Phase::Rayleigh { gamma: [0.0] },
+        }
     }
 
     fn exponential(scale_height: f64, top: f64, steps: usize) -> Curve {
@@ -374,7 +387,11 @@ mod tests {
     fn optical_depth_of_a_homogeneous_shell_is_the_chord() {
         let top = 5e4;
         let axis = Axis::new("altitude", "m", vec![0.0, top]).expect("valid").between(Interpolation::Step);
-        let medium = Medium::new(vec![component(Curve::new(axis, Scale::Linear, vec![1.0, 1.0]).expect("valid"), 0.0, 1e-6)], top).expect("valid");
+        let medium = Medium::new(
+            vec![component(Curve::new(axis, Scale::Linear, vec![1.0, 1.0]).expect("valid"), 0.0, 1e-6)],
+            top,
+        )
+        .expect("valid");
         for zenith in [0.0_f64, 30.0, 60.0, 85.0, 89.9, 90.0] {
             let (sin, cos) = zenith.to_radians().sin_cos();
             let chord = -RADIUS * cos + (RADIUS * RADIUS * cos * cos + 2.0 * RADIUS * top + top * top).sqrt();
@@ -389,7 +406,9 @@ mod tests {
     fn bounds_hold_everywhere_and_shells_cover_the_medium() {
         let ozone = Axis::new("altitude", "m", vec![5e3, 2e4, 4e4]).expect("valid").beyond(Outside::Zero);
         let ozone = Curve::new(ozone, Scale::Linear, vec![0.0, 1.0, 0.0]).expect("valid");
-        let medium = Medium::new(vec![component(exponential(8e3, 1e5, 100), 1e-5, 0.0), component(ozone, 0.0, 3e-6)], 1e5).expect("valid");
+        let medium =
+            Medium::new(vec![component(exponential(8e3, 1e5, 100), 1e-5, 0.0), component(ozone, 0.0, 3e-6)], 1e5)
+                .expect("valid");
         assert_eq!((medium.bounds()[0], medium.top_m()), (0.0, 1e5));
         for (k, shell) in medium.shells().iter().enumerate() {
             let (a, b) = (medium.bounds()[k], medium.bounds()[k + 1]);
@@ -404,7 +423,10 @@ mod tests {
 
     #[test]
     fn a_step_profile_keeps_its_jump() {
-        let axis = Axis::new("altitude", "m", vec![0.0, 1e3, 2e3]).expect("valid").between(Interpolation::Step).beyond(Outside::Zero);
+        let axis = Axis::new("altitude", "m", vec![0.0, 1e3, 2e3])
+            .expect("valid")
+            .between(Interpolation::Step)
+            .beyond(Outside::Zero);
         let curve = Curve::new(axis, Scale::Linear, vec![1.0, 5.0, 5.0]).expect("valid");
         let medium = Medium::new(vec![component(curve, 1e-4, 0.0)], 3e3).expect("valid");
         let depth = 1e-4 * (1e3 + 5e3);

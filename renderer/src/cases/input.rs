@@ -139,7 +139,8 @@ fn one() -> f64 {
 /// [`CasesError`] if it cannot be read, is not of the form, or names a case twice.
 pub fn read(path: &Path) -> Result<Suite, CasesError> {
     let text = std::fs::read(path).map_err(|source| CasesError::Read { path: path.into(), source })?;
-    let suite: Suite = serde_json::from_slice(&text).map_err(|source| CasesError::Malformed { path: path.into(), source })?;
+    let suite: Suite =
+        serde_json::from_slice(&text).map_err(|source| CasesError::Malformed { path: path.into(), source })?;
     let mut seen = std::collections::BTreeSet::new();
     for case in &suite.cases {
         if !seen.insert(&case.id) {

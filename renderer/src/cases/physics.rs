@@ -65,7 +65,7 @@ impl Estimand {
     /// the density cos(theta)/pi.
     pub(super) fn sample(&self, method: Method, sampler: &mut Sampler) -> f64 {
         let flux = |facing: DVec3, sampler: &mut Sampler| {
-            let direction = cosine_hemisphere(facing, sampler.next_2d());
+            let direction = cosine_hemisphere(facing, sampler.uniform_2d());
             PI * self.radiance(method, direction, sampler)
         };
         match self.quantity {
@@ -98,7 +98,12 @@ pub(super) fn prepare(case: &Case, profiles: &BTreeMap<String, Profile>) -> Resu
     }
     let max_orders = match case.orders.as_str() {
         "all" => None,
-        text => Some(text.parse().ok().filter(|&n| n > 0).ok_or_else(|| format!("orders must be \"all\" or a number from 1, not {text:?}"))?),
+        text => Some(
+            text.parse()
+                .ok()
+                .filter(|&n| n > 0)
+                .ok_or_else(|| format!("orders must be \"all\" or a number from 1, not {text:?}"))?,
+        ),
     };
     ranged("sza_deg", case.sza_deg, 0.0, 180.0)?;
     ranged("albedo", case.albedo, 0.0, 1.0)?;
@@ -159,7 +164,11 @@ fn view(case: &Case) -> Result<DVec3, String> {
 }
 
 fn ranged(name: &str, value: f64, low: f64, high: f64) -> Result<(), String> {
-    if (low..=high).contains(&value) { Ok(()) } else { Err(format!("{name} must be from {low} to {high}, not {value}")) }
+    if (low..=high).contains(&value) {
+        Ok(())
+    } else {
+        Err(format!("{name} must be from {low} to {high}, not {value}"))
+    }
 }
 
 /// A phase function of the files: `rayleigh` with the depolarisation rho, gamma = rho / (2 - rho), or
@@ -226,12 +235,18 @@ fn spherical(profile: &Profile, phases: Option<&[(f64, String, f64)]>) -> Result
         if per_km.iter().any(|&v| v < 0.0) {
             return Err("a coefficient of the profile is negative".into());
         }
-        Curve::new(axis.clone(), Scale::Linear, per_km.iter().map(|v| share * v / KM).collect()).map_err(|e| e.to_string())
+        Curve::new(axis.clone(), Scale::Linear, per_km.iter().map(|v| share * v / KM).collect())
+            .map_err(|e| e.to_string())
     };
     let mut components = Vec::new();
     let mut add = |per_km: &[f64], share: f64, scattering: f64, phase: Phase<1>| -> Result<(), String> {
         if per_km.iter().any(|&v| v != 0.0) {
-            components.push(Component { density: curve(per_km, share)?, scattering: [scattering], absorption: [1.0 - scattering], phase });
+            components.push(Component {
+                density: curve(per_km, share)?,
+                scattering: [scattering],
+                absorption: [1.0 - scattering],
+                phase,
+            });
         }
         Ok(())
     };
@@ -244,7 +259,8 @@ fn spherical(profile: &Profile, phases: Option<&[(f64, String, f64)]>) -> Result
             add(&part.absorption_per_km, 1.0, 0.0, none.clone())?;
         }
     } else {
-        let scattering = profile.scattering_per_km.as_ref().ok_or("the profile has neither scattering_per_km nor components")?;
+        let scattering =
+            profile.scattering_per_km.as_ref().ok_or("the profile has neither scattering_per_km nor components")?;
         for (weight, kind, parameter) in phases.ok_or("a case with a plain profile needs a phase")? {
             ranged("weight of a phase function", *weight, 0.0, 1.0)?;
             add(scattering, *weight, 1.0, phase(kind, *parameter)?)?;

@@ -10,7 +10,9 @@ fn suite(cases: &str) -> Suite {
 }
 
 fn case(id: &str, rest: &str) -> String {
-    format!(r#"{{"id": "{id}", "sza_deg": 60, "albedo": 0.5, "orders": "all", "view_zenith_deg": 0, "view_dphi_deg": 0, {rest}}}"#)
+    format!(
+        r#"{{"id": "{id}", "sza_deg": 60, "albedo": 0.5, "orders": "all", "view_zenith_deg": 0, "view_dphi_deg": 0, {rest}}}"#
+    )
 }
 
 fn answer(text: &str, effort: Effort) -> Report {
@@ -22,17 +24,28 @@ const ABSORBER: &str = r#""geometry": "plane-parallel", "observer": "ground", "l
 
 #[test]
 fn fluxes_of_an_absorbing_layer_are_closed_forms() {
-    let cases = ["flux_down_direct_ground", "flux_up_ground", "flux_up_top"].map(|q| case(q, &format!(r#""quantity": "{q}", {ABSORBER}"#)));
-    let cases = cases.join(",").replace(r#""flux_up_top", "geometry": "plane-parallel", "observer": "ground""#, r#""flux_up_top", "geometry": "plane-parallel", "observer": "top""#);
+    let cases = ["flux_down_direct_ground", "flux_up_ground", "flux_up_top"]
+        .map(|q| case(q, &format!(r#""quantity": "{q}", {ABSORBER}"#)));
+    let cases = cases.join(",").replace(
+        r#""flux_up_top", "geometry": "plane-parallel", "observer": "ground""#,
+        r#""flux_up_top", "geometry": "plane-parallel", "observer": "top""#,
+    );
     let report = answer(&cases, Effort::Error(0.003));
     assert_eq!(report.refusals, []);
     let direct = 0.5 * (-0.6_f64).exp();
     // Flux transmittance 2 E_3(tau) by midpoints: integral of 2 mu exp(-tau/mu).
     let n = 100_000;
-    let flux: f64 = (0..n).map(|i| (f64::from(i) + 0.5) / f64::from(n)).map(|mu| 2.0 * mu * (-0.3 / mu).exp() / f64::from(n)).sum();
+    let flux: f64 =
+        (0..n).map(|i| (f64::from(i) + 0.5) / f64::from(n)).map(|mu| 2.0 * mu * (-0.3 / mu).exp() / f64::from(n)).sum();
     for (found, expected) in report.answers.iter().zip([direct, 0.5 * direct, 0.5 * direct * flux]) {
         let allowed = 5.0 * found.stderr + 1e-9;
-        assert!((found.value - expected).abs() <= allowed, "{}: {} +- {}, must be {expected}", found.id, found.value, found.stderr);
+        assert!(
+            (found.value - expected).abs() <= allowed,
+            "{}: {} +- {}, must be {expected}",
+            found.id,
+            found.value,
+            found.stderr
+        );
         assert!(found.stderr <= 0.003 * expected, "{}: error {}", found.id, found.stderr);
     }
 }
@@ -55,7 +68,10 @@ fn what_is_not_offered_is_refused_with_a_reason() {
         case("vector", &format!(r#""polarization": "vector", {radiance}"#)),
         case("phase", &radiance.replace("rayleigh", "mie")),
         case("ssa", &radiance.replace(r#""ssa": 1.0"#, r#""ssa": 1.5"#)),
-        case("profile", r#""quantity": "radiance", "geometry": "spherical", "profile": "none", "observer": "ground", "observer_alt_km": 0"#),
+        case(
+            "profile",
+            r#""quantity": "radiance", "geometry": "spherical", "profile": "none", "observer": "ground", "observer_alt_km": 0"#,
+        ),
         case("quantity", &radiance.replace("\"radiance\"", "\"colour\"")),
     ];
     let report = answer(&cases.join(","), Effort::Paths(10));

@@ -225,7 +225,7 @@ fn within(camera: &Camera, x: u32, y: u32, sampler: &mut Sampler) -> DVec3 {
     let (left, top) = (f64::from(x), f64::from(y));
     (0..64)
         .find_map(|_| {
-            let [u, v] = sampler.next_2d();
+            let [u, v] = sampler.uniform_2d();
             camera.direction(left + u, top + v)
         })
         .or_else(|| camera.direction(left + 0.5, top + 0.5))

@@ -35,7 +35,7 @@ impl Summary {
     /// distributed as cos(theta)/pi; both estimates to 0.5 % standard error or 131 072 samples.
     #[must_use]
     pub fn new(sky: &Sky, seed: u64) -> Self {
-        let hemisphere = estimate(sky, seed, HEMISPHERE, |sampler| cosine_hemisphere(DVec3::Z, sampler.next_2d()));
+        let hemisphere = estimate(sky, seed, HEMISPHERE, |sampler| cosine_hemisphere(DVec3::Z, sampler.uniform_2d()));
         Self {
             sun_lux: sky.colour().xyz(&sky.direct_irradiance())[1],
             sky_lux: Estimate { mean: PI * hemisphere.mean, error: PI * hemisphere.error },

@@ -79,7 +79,7 @@ fn the_sun_in_the_picture_gives_the_sunlight_on_the_ground() {
         };
         let sky = sky(&scene);
         let pixel = fov_deg.to_radians() / f64::from(n);
-        let mut irradiance = vec![0.0; 3];
+        let mut irradiance = [0.0; 3];
         for factors in disc_layer(&scene, &sky).values() {
             for (sum, factor) in irradiance.iter_mut().zip(factors) {
                 *sum += factor * pixel * pixel * 0.5;

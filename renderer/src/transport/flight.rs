@@ -58,9 +58,10 @@ pub(super) fn delta<const L: usize>(
             }
             let local = problem.medium.local(layer, track.ray.altitude_m(at));
             let (scattering, extinction) = (local.scattering[hero], local.extinction[hero]);
-            let choice = sampler.next() * majorant[hero];
+            let choice = sampler.uniform() * majorant[hero];
             if choice < scattering {
-                carried.multiply_both(|j| factor[j] * (depth[hero] - depth[j]).exp() * local.scattering[j] / scattering);
+                carried
+                    .multiply_both(|j| factor[j] * (depth[hero] - depth[j]).exp() * local.scattering[j] / scattering);
                 return Outcome::Air(at, Box::new(local));
             }
             if choice < extinction {
@@ -124,14 +125,11 @@ pub(super) fn forced<const L: usize>(
         End::Ground(t) => {
             if problem.albedo.iter().any(|&albedo| albedo > 0.0) {
                 probability = collision.map(|p| p.clamp(AIR_OR_GROUND.0, AIR_OR_GROUND.1));
-                if total[hero] == 0.0 || sampler.next() >= probability[hero] {
+                if total[hero] == 0.0 || sampler.uniform() >= probability[hero] {
                     let of_ground = |p: f64, depth: f64| if depth == 0.0 { 1.0 } else { 1.0 - p };
                     let chosen = of_ground(probability[hero], total[hero]);
                     let through = ratio::transmittance(problem.medium, &track.ray, track.segments, t, sampler);
-                    carried.multiply(
-                        |j| through[j] / chosen,
-                        |j| of_ground(probability[j], total[j]) / chosen,
-                    );
+                    carried.multiply(|j| through[j] / chosen, |j| of_ground(probability[j], total[j]) / chosen);
                     return Outcome::Ground(t);
                 }
             }
@@ -141,12 +139,16 @@ pub(super) fn forced<const L: usize>(
         return Outcome::Lost;
     }
     // Invert: M(t) = -ln(1 - u (1 - exp(-M))).
-    let target = -(-sampler.next() * collision[hero]).ln_1p();
+    let target = -(-sampler.uniform() * collision[hero]).ln_1p();
     let Some((layer, t)) = invert(problem, track.segments, hero, target) else { return Outcome::Lost };
     let local = problem.medium.local(layer, track.ray.altitude_m(t));
     let depth = optical_depth(problem, track.segments, t);
     let density: [f64; L] = std::array::from_fn(|j| {
-        if collision[j] > 0.0 { probability[j] * shells[layer].majorant[j] * (-depth[j]).exp() / collision[j] } else { 0.0 }
+        if collision[j] > 0.0 {
+            probability[j] * shells[layer].majorant[j] * (-depth[j]).exp() / collision[j]
+        } else {
+            0.0
+        }
     });
     let through = ratio::transmittance(problem.medium, &track.ray, track.segments, t, sampler);
     carried.multiply(|j| through[j] * local.scattering[j] / density[hero], |j| density[j] / density[hero]);
@@ -169,7 +171,12 @@ fn optical_depth<const L: usize>(problem: &Problem<'_, L>, segments: &[Segment],
 }
 
 /// Layer and distance at which the hero's majorant optical depth is `target`.
-fn invert<const L: usize>(problem: &Problem<'_, L>, segments: &[Segment], hero: usize, target: f64) -> Option<(usize, f64)> {
+fn invert<const L: usize>(
+    problem: &Problem<'_, L>,
+    segments: &[Segment],
+    hero: usize,
+    target: f64,
+) -> Option<(usize, f64)> {
     let mut left = target;
     let mut last = None;
     for &Segment { layer, start_m, end_m } in segments {

@@ -65,7 +65,7 @@ pub fn radiance<const L: usize>(
     direction: DVec3,
     sampler: &mut Sampler,
 ) -> [f64; L] {
-    let hero = ((sampler.next() * L as f64) as usize).min(L - 1);
+    let hero = ((sampler.uniform() * L as f64) as usize).min(L - 1);
     match method {
         Method::Judge => path::trace(problem, from, direction, hero, sampler, flight::delta),
         Method::Paths => path::trace(problem, from, direction, hero, sampler, flight::forced),

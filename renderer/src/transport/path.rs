@@ -106,7 +106,7 @@ pub(super) fn trace<const L: usize>(
                     let cosine = place.up.dot(sun).max(0.0);
                     carried.score(&mut sum, |j| FRAC_1_PI * cosine * light[j]);
                 }
-                direction = cosine_hemisphere(place.up, sampler.next_2d());
+                direction = cosine_hemisphere(place.up, sampler.uniform_2d());
             }
         }
         let weight = carried.weight();
@@ -116,7 +116,7 @@ pub(super) fn trace<const L: usize>(
         let first = *first_weight.get_or_insert(weight);
         let survival = SURVIVAL * weight / first;
         if survival < 1.0 {
-            if sampler.next() >= survival {
+            if sampler.uniform() >= survival {
                 break;
             }
             carried.multiply(|_| 1.0 / survival, |_| 1.0);
@@ -134,7 +134,7 @@ fn sunlight<const L: usize>(
     segments: &mut Vec<Segment>,
     sampler: &mut Sampler,
 ) -> Option<(DVec3, [f64; L])> {
-    let (sun, limb) = problem.sun?.sample(sampler.next_2d());
+    let (sun, limb) = problem.sun?.sample(sampler.uniform_2d());
     let ray = Ray::new(problem.shape, place, sun);
     match ray.segments(problem.medium.bounds(), segments) {
         End::Ground(_) => None,
@@ -185,8 +185,8 @@ fn scatter<const L: usize>(
     carried: &mut Carried<L>,
     sampler: &mut Sampler,
 ) -> Option<DVec3> {
-    let mut choice = sampler.next() * local.scattering[hero];
-    let [u, turn] = sampler.next_2d();
+    let mut choice = sampler.uniform() * local.scattering[hero];
+    let [u, turn] = sampler.uniform_2d();
     let mut chosen = None;
     for (component, density) in scatterers(medium, local) {
         chosen = Some(component);

@@ -50,5 +50,5 @@ pub(super) fn transmittance<const L: usize>(
 
 /// An exponential variate of mean 1.
 pub(super) fn exponential(sampler: &mut Sampler) -> f64 {
-    -(1.0 - sampler.next()).ln()
+    -(1.0 - sampler.uniform()).ln()
 }

@@ -38,14 +38,24 @@ fn mixed() -> Medium<4> {
     let top = 6e4;
     medium(
         vec![
-            Component { density: exponential(8e3, top), scattering: [3e-5, 1.5e-5, 8e-6, 2e-6], absorption: [0.0; 4], phase: rayleigh(0.015) },
+            Component {
+                density: exponential(8e3, top),
+                scattering: [3e-5, 1.5e-5, 8e-6, 2e-6],
+                absorption: [0.0; 4],
+                phase: rayleigh(0.015),
+            },
             Component {
                 density: exponential(1.2e3, top),
                 scattering: [1e-4, 9e-5, 8e-5, 7e-5],
                 absorption: [1e-5; 4],
                 phase: Phase::HenyeyGreenstein { g: [0.6, 0.65, 0.7, 0.76] },
             },
-            Component { density: slab(2e4, 3e4), scattering: [0.0; 4], absorption: [0.0, 1e-6, 5e-6, 1e-6], phase: rayleigh(0.0) },
+            Component {
+                density: slab(2e4, 3e4),
+                scattering: [0.0; 4],
+                absorption: [0.0, 1e-6, 5e-6, 1e-6],
+                phase: rayleigh(0.0),
+            },
         ],
         top,
     )
@@ -58,7 +68,14 @@ fn towards(zenith_deg: f64, azimuth_deg: f64) -> DVec3 {
 }
 
 /// Mean and standard error of `n` estimates at each wavelength.
-fn estimate<const L: usize>(method: Method, problem: &Problem<'_, L>, from: Place, direction: DVec3, n: u32, seed: u64) -> [(f64, f64); L] {
+fn estimate<const L: usize>(
+    method: Method,
+    problem: &Problem<'_, L>,
+    from: Place,
+    direction: DVec3,
+    n: u32,
+    seed: u64,
+) -> [(f64, f64); L] {
     let (mut sum, mut squares) = ([0.0; L], [0.0; L]);
     for sample in 0..n {
         let estimate = radiance(method, problem, from, direction, &mut Sampler::new(seed, 0, u64::from(sample)));
@@ -85,7 +102,8 @@ fn agree((value, error): (f64, f64), expected: f64, what: &str) {
 #[test]
 fn an_absorbing_atmosphere_dims_the_environment_by_beer_lambert() {
     let (h, top, sigma) = (8e3, 6e4, 2e-5);
-    let absorber = Component { density: exponential(h, top), scattering: [0.0], absorption: [sigma], phase: rayleigh(0.0) };
+    let absorber =
+        Component { density: exponential(h, top), scattering: [0.0], absorption: [sigma], phase: rayleigh(0.0) };
     let medium = medium(vec![absorber], top);
     for (shape, zenith) in [(EARTH, 0.0), (EARTH, 80.0), (EARTH, 88.0), (Shape::Flat, 70.0)] {
         // The optical depth by 200 000 midpoints along the chord, in radii.
@@ -106,7 +124,14 @@ fn an_absorbing_atmosphere_dims_the_environment_by_beer_lambert() {
             })
             .sum();
         for method in METHODS {
-            let problem = Problem { shape, medium: &medium, albedo: [0.0], sun: None, environment: Some([1.0]), max_orders: None };
+            let problem = Problem {
+                shape,
+                medium: &medium,
+                albedo: [0.0],
+                sun: None,
+                environment: Some([1.0]),
+                max_orders: None,
+            };
             let [found] = estimate(method, &problem, Place::above(0.0), towards(zenith, 0.0), 60_000, 1);
             agree(found, (-depth).exp(), &format!("{method:?}, {shape:?}, zenith {zenith}"));
         }
@@ -116,7 +141,12 @@ fn an_absorbing_atmosphere_dims_the_environment_by_beer_lambert() {
 #[test]
 fn a_conservative_atmosphere_over_white_ground_returns_the_environment() {
     let top = 6e4;
-    let molecules = Component { density: exponential(8e3, top), scattering: [3e-5, 1e-5], absorption: [0.0; 2], phase: rayleigh(0.02) };
+    let molecules = Component {
+        density: exponential(8e3, top),
+        scattering: [3e-5, 1e-5],
+        absorption: [0.0; 2],
+        phase: rayleigh(0.02),
+    };
     let haze = Component {
         density: exponential(1.5e3, top),
         scattering: [2e-4, 1e-4],
@@ -127,10 +157,21 @@ fn a_conservative_atmosphere_over_white_ground_returns_the_environment() {
     for shape in [EARTH, Shape::Flat] {
         for (altitude, zenith) in [(0.0, 20.0), (0.0, 87.0), (2e3, 130.0), (1e5, 150.0)] {
             for method in METHODS {
-                let problem = Problem { shape, medium: &medium, albedo: [1.0; 2], sun: None, environment: Some([1.0; 2]), max_orders: None };
+                let problem = Problem {
+                    shape,
+                    medium: &medium,
+                    albedo: [1.0; 2],
+                    sun: None,
+                    environment: Some([1.0; 2]),
+                    max_orders: None,
+                };
                 let found = estimate(method, &problem, Place::above(altitude), towards(zenith, 0.0), 4_000, 2);
                 for (lane, found) in found.into_iter().enumerate() {
-                    agree(found, 1.0, &format!("{method:?}, {shape:?}, {altitude} m, zenith {zenith}, wavelength {lane}"));
+                    agree(
+                        found,
+                        1.0,
+                        &format!("{method:?}, {shape:?}, {altitude} m, zenith {zenith}, wavelength {lane}"),
+                    );
                 }
             }
         }
@@ -142,7 +183,8 @@ fn one_order_of_scattering_is_the_integral_along_the_ray() {
     // L = integral of sigma p(cos) exp(-tau(0, t)) exp(-tau to the sun) dt, with optical
     // depths summed by midpoints in plain radii: nothing shared with the tracer.
     let (h, top, sigma, gamma) = (8e3, 6e4, 2e-5, 0.015);
-    let air = Component { density: exponential(h, top), scattering: [sigma], absorption: [0.0], phase: rayleigh(gamma) };
+    let air =
+        Component { density: exponential(h, top), scattering: [sigma], absorption: [0.0], phase: rayleigh(gamma) };
     let medium = medium(vec![air], top);
     let sun = towards(60.0, 0.0);
     let disc = SunDisc::beam(sun);
@@ -162,7 +204,8 @@ fn one_order_of_scattering_is_the_integral_along_the_ray() {
         let view = towards(zenith, 90.0);
         let eye = DVec3::Z * (RADIUS + 1.0);
         let length = exit(eye, view);
-        let phase = 3.0 / (16.0 * std::f64::consts::PI * (1.0 + 2.0 * gamma)) * ((1.0 + 3.0 * gamma) + (1.0 - gamma) * view.dot(sun).powi(2));
+        let phase = 3.0 / (16.0 * std::f64::consts::PI * (1.0 + 2.0 * gamma))
+            * ((1.0 + 3.0 * gamma) + (1.0 - gamma) * view.dot(sun).powi(2));
         let n = 2_000;
         let expected: f64 = (0..n)
             .map(|i| {
@@ -173,7 +216,14 @@ fn one_order_of_scattering_is_the_integral_along_the_ray() {
             })
             .sum();
         for method in METHODS {
-            let problem = Problem { shape: EARTH, medium: &medium, albedo: [0.3], sun: Some(&disc), environment: None, max_orders: Some(1) };
+            let problem = Problem {
+                shape: EARTH,
+                medium: &medium,
+                albedo: [0.3],
+                sun: Some(&disc),
+                environment: None,
+                max_orders: Some(1),
+            };
             let (value, error) = estimate(method, &problem, Place::above(1.0), view, 60_000, 3)[0];
             // The midpoint sums are right to 1e-4.
             agree((value, error + 2e-5 * expected), expected, &format!("{method:?}, zenith {zenith}"));
@@ -185,11 +235,21 @@ fn one_order_of_scattering_is_the_integral_along_the_ray() {
 fn light_of_a_black_sky_ground_is_lambert_times_two_transmittances() {
     // One order seen from above a nearly empty atmosphere is the ground alone:
     // albedo / pi cos(60) exp(-tau (1 + 2)), tau = 1e-3 of absorption.
-    let medium = medium(vec![Component { density: slab(0.0, 1e3), scattering: [0.0], absorption: [1e-6], phase: rayleigh(0.0) }], 1e3);
+    let medium = medium(
+        vec![Component { density: slab(0.0, 1e3), scattering: [0.0], absorption: [1e-6], phase: rayleigh(0.0) }],
+        1e3,
+    );
     let disc = SunDisc::beam(towards(60.0, 0.0));
     let expected = 0.4 / std::f64::consts::PI * 0.5 * (-3e-3_f64).exp();
     for method in METHODS {
-        let problem = Problem { shape: Shape::Flat, medium: &medium, albedo: [0.4], sun: Some(&disc), environment: None, max_orders: Some(1) };
+        let problem = Problem {
+            shape: Shape::Flat,
+            medium: &medium,
+            albedo: [0.4],
+            sun: Some(&disc),
+            environment: None,
+            max_orders: Some(1),
+        };
         let [found] = estimate(method, &problem, Place::above(1e3), -DVec3::Z, 2_000, 4);
         agree(found, expected, &format!("{method:?}"));
     }
@@ -200,7 +260,14 @@ fn methods_agree_at_every_wavelength_of_a_mixture() {
     let medium = mixed();
     let disc = SunDisc::beam(towards(70.0, 0.0));
     for (altitude, zenith, azimuth) in [(0.0, 30.0, 40.0), (0.0, 85.0, 180.0), (1e4, 100.0, 90.0), (4e5, 160.0, 0.0)] {
-        let problem = Problem { shape: EARTH, medium: &medium, albedo: [0.8, 0.3, 0.1, 0.05], sun: Some(&disc), environment: None, max_orders: None };
+        let problem = Problem {
+            shape: EARTH,
+            medium: &medium,
+            albedo: [0.8, 0.3, 0.1, 0.05],
+            sun: Some(&disc),
+            environment: None,
+            max_orders: None,
+        };
         let from = Place::above(altitude);
         let judge = estimate(Method::Judge, &problem, from, towards(zenith, azimuth), 60_000, 5);
         let paths = estimate(Method::Paths, &problem, from, towards(zenith, azimuth), 20_000, 6);
@@ -219,7 +286,8 @@ fn wavelengths_carried_together_equal_wavelengths_alone() {
     let view = towards(75.0, 120.0);
     let albedo = [0.8, 0.3, 0.1, 0.05];
     for method in METHODS {
-        let problem = Problem { shape: EARTH, medium: &together, albedo, sun: Some(&disc4), environment: None, max_orders: None };
+        let problem =
+            Problem { shape: EARTH, medium: &together, albedo, sun: Some(&disc4), environment: None, max_orders: None };
         let all = estimate(method, &problem, Place::above(0.0), view, 40_000, 7);
         for lane in 0..4 {
             let components = together
@@ -237,7 +305,14 @@ fn wavelengths_carried_together_equal_wavelengths_alone() {
                 })
                 .collect();
             let alone = medium(components, together.top_m());
-            let problem = Problem { shape: EARTH, medium: &alone, albedo: [albedo[lane]], sun: Some(&disc1), environment: None, max_orders: None };
+            let problem = Problem {
+                shape: EARTH,
+                medium: &alone,
+                albedo: [albedo[lane]],
+                sun: Some(&disc1),
+                environment: None,
+                max_orders: None,
+            };
             let [one] = estimate(method, &problem, Place::above(0.0), view, 40_000, 8);
             agree((all[lane].0, all[lane].1.hypot(one.1)), one.0, &format!("{method:?}, wavelength {lane}"));
         }
@@ -248,7 +323,14 @@ fn wavelengths_carried_together_equal_wavelengths_alone() {
 fn an_empty_ray_gives_no_light() {
     let medium = mixed();
     let disc = SunDisc::beam(towards(30.0, 0.0));
-    let problem = Problem { shape: EARTH, medium: &medium, albedo: [0.5; 4], sun: Some(&disc), environment: None, max_orders: None };
+    let problem = Problem {
+        shape: EARTH,
+        medium: &medium,
+        albedo: [0.5; 4],
+        sun: Some(&disc),
+        environment: None,
+        max_orders: None,
+    };
     for method in METHODS {
         let found = radiance(method, &problem, Place::above(4e5), DVec3::Z, &mut Sampler::new(1, 2, 3));
         assert_eq!(found, [0.0; 4], "{method:?} found light in empty space");
