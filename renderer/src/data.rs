@@ -1,10 +1,12 @@
 //! The tables of `data/`, read once.
 
 use std::path::{Path, PathBuf};
+use tables::file::{checksum, decode};
 use tables::views::{
-    GroundAlbedo, Observer, OzoneCrossSection, OzoneLayers, OzoneProfiles, Rayleigh, StandardAtmosphere, Sun,
+    Aerosol, AerosolSource, Biome, GroundAlbedo, Observer, OzoneCrossSection, OzoneLayers, OzoneProfiles, Rayleigh,
+    StandardAtmosphere, Sun,
 };
-use tables::{Kind, Table, TableError, file};
+use tables::{Kind, Table, TableError};
 
 /// Every table that a picture can need, and the identity of each for its receipt.
 #[derive(Debug, Clone)]
@@ -27,6 +29,7 @@ pub struct Data {
     pub ground_albedo: GroundAlbedo,
     /// What was read, for the picture's attributes.
     pub identities: Vec<Identity>,
+    folder: PathBuf,
 }
 
 /// What identifies a table file that was read.
@@ -36,7 +39,7 @@ pub struct Identity {
     pub file: String,
     /// Title in the file.
     pub title: String,
-    /// [`file::checksum`] of the file.
+    /// [`checksum`] of the file.
     pub checksum: u32,
 }
 
@@ -57,45 +60,61 @@ pub enum DataError {
 }
 
 impl Data {
-    /// Reads every kind of table from `folder`.
+    /// Reads every kind of table from `folder`; aerosols when they are asked for.
     ///
     /// # Errors
     /// [`DataError`] with the first file that is absent or cannot be used, and why.
     pub fn load(folder: &Path) -> Result<Self, DataError> {
         let mut identities = Vec::new();
-        let mut read = |kind: Kind| -> Result<Table, DataError> {
-            let name = kind.file_name();
-            let path = folder.join(&name);
-            let bytes = match std::fs::read(&path) {
-                Ok(bytes) => bytes,
-                Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-                    return Err(DataError::Absent { folder: folder.into(), file: name });
-                }
-                Err(source) => return Err(TableError::Read { path, source }.into()),
-            };
-            let table = file::decode(&bytes).map_err(|e| e.at(&path))?;
-            let checksum = file::checksum(&bytes).unwrap_or_default();
-            identities.push(Identity { file: name, title: table.title.clone(), checksum });
-            Ok(table)
-        };
-        let mut view =
-            |kind: Kind| -> Result<(Table, PathBuf), DataError> { Ok((read(kind)?, folder.join(kind.file_name()))) };
         macro_rules! load {
-            ($view:ident, $kind:ident) => {{
-                let (table, path) = view(Kind::$kind)?;
-                $view::from_table(&table).map_err(|e| e.at(&path))?
+            ($view:ident) => {{
+                let (view, identity) = read(folder, Kind::$view.file_name(), $view::from_table)?;
+                identities.push(identity);
+                view
             }};
         }
         Ok(Self {
-            standard_atmosphere: load!(StandardAtmosphere, StandardAtmosphere),
-            rayleigh: load!(Rayleigh, Rayleigh),
-            ozone_cross_section: load!(OzoneCrossSection, OzoneCrossSection),
-            ozone_profiles: load!(OzoneProfiles, OzoneProfiles),
-            ozone_layers: load!(OzoneLayers, OzoneLayers),
-            sun: load!(Sun, Sun),
-            observer: load!(Observer, Observer),
-            ground_albedo: load!(GroundAlbedo, GroundAlbedo),
+            standard_atmosphere: load!(StandardAtmosphere),
+            rayleigh: load!(Rayleigh),
+            ozone_cross_section: load!(OzoneCrossSection),
+            ozone_profiles: load!(OzoneProfiles),
+            ozone_layers: load!(OzoneLayers),
+            sun: load!(Sun),
+            observer: load!(Observer),
+            ground_albedo: load!(GroundAlbedo),
             identities,
+            folder: folder.into(),
         })
     }
+
+    /// Reads the aerosol of a biome after a source.
+    ///
+    /// # Errors
+    /// [`DataError`] if its file is absent, cannot be used, or holds another biome or source.
+    pub fn aerosol(&self, source: AerosolSource, biome: Biome) -> Result<(Aerosol, Identity), DataError> {
+        let name = Aerosol::file_name(source, biome);
+        let (aerosol, identity) = read(&self.folder, name, Aerosol::from_table)?;
+        if (aerosol.source, aerosol.biome) != (source, biome) {
+            let text = format!("the table holds {} after {}", aerosol.biome, aerosol.source);
+            return Err(TableError::Inconsistent(text).at(&self.folder.join(&identity.file)).into());
+        }
+        Ok((aerosol, identity))
+    }
+}
+
+/// Reads one file through its view.
+fn read<V>(folder: &Path, file: String, view: fn(&Table) -> Result<V, TableError>) -> Result<(V, Identity), DataError> {
+    let path = folder.join(&file);
+    let bytes = match std::fs::read(&path) {
+        Ok(bytes) => bytes,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+            return Err(DataError::Absent { folder: folder.into(), file });
+        }
+        Err(source) => return Err(TableError::Read { path, source }.into()),
+    };
+    let named = |error: TableError| error.at(&path);
+    let table = decode(&bytes).map_err(named)?;
+    let seen = view(&table).map_err(named)?;
+    // A file that decodes has a checksum.
+    Ok((seen, Identity { file, title: table.title, checksum: checksum(&bytes).unwrap_or_default() }))
 }

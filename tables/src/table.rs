@@ -24,6 +24,8 @@ pub enum Kind {
     Observer,
     /// Spectral albedo of grounds.
     GroundAlbedo,
+    /// The aerosol of one biome: profiles, cross-sections and phase functions of its species.
+    Aerosol,
 }
 
 impl std::fmt::Display for Kind {
@@ -37,12 +39,14 @@ impl std::fmt::Display for Kind {
             Self::Sun => "sun",
             Self::Observer => "observer",
             Self::GroundAlbedo => "ground-albedo",
+            Self::Aerosol => "aerosol",
         })
     }
 }
 
 impl Kind {
-    /// Every kind, in the order in which `data/` is listed.
+    /// Every kind of which `data/` has one file, in the order in which it is listed. Of [`Kind::Aerosol`] there is one
+    /// for each source and biome: see [`crate::views::Aerosol::file_name`].
     pub const ALL: [Self; 8] = [
         Self::StandardAtmosphere,
         Self::Rayleigh,
@@ -54,7 +58,7 @@ impl Kind {
         Self::GroundAlbedo,
     ];
 
-    /// Name of the file of this kind in `data/`: the kind and `.table`.
+    /// Name of the file of a kind of [`Kind::ALL`] in `data/`: the kind and `.table`.
     #[must_use]
     pub fn file_name(self) -> String {
         format!("{self}.table")
@@ -189,7 +193,11 @@ impl Table {
         for field in &self.fields {
             let expected = self.length_of(&field.name, &field.axes)?;
             if field.values.len() != expected {
-                return fail(format!("field {:?}: {} values where its axes make {expected}", field.name, field.values.len()));
+                return fail(format!(
+                    "field {:?}: {} values where its axes make {expected}",
+                    field.name,
+                    field.values.len()
+                ));
             }
             if let Some(i) = field.values.iter().position(|v| !v.is_finite()) {
                 return fail(format!("field {:?}: value {i} is not finite", field.name));
@@ -245,7 +253,10 @@ impl Table {
             return Err(TableError::WrongUnit { name: name.into(), expected: unit.into(), found: field.unit.clone() });
         }
         if field.axes != axes {
-            return Err(TableError::Inconsistent(format!("field {name:?} is over {:?}, {axes:?} is needed", field.axes)));
+            return Err(TableError::Inconsistent(format!(
+                "field {name:?} is over {:?}, {axes:?} is needed",
+                field.axes
+            )));
         }
         Ok(field)
     }
@@ -258,7 +269,11 @@ impl Table {
         let field = self.field(name, unit, &[axis.0])?;
         let found = self.axis(axis.0)?;
         if found.unit != axis.1 {
-            return Err(TableError::WrongUnit { name: axis.0.into(), expected: axis.1.into(), found: found.unit.clone() });
+            return Err(TableError::WrongUnit {
+                name: axis.0.into(),
+                expected: axis.1.into(),
+                found: found.unit.clone(),
+            });
         }
         Curve::new(found.clone(), field.scale, field.values.clone())
     }

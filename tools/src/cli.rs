@@ -9,8 +9,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
-use tables::Kind;
-use tools::build::{self, Built, CheckReport};
+use tools::build::{self, Built, CheckReport, Target};
 use tools::inspect;
 
 /// Makes, checks and shows the tables that Airlight's renderer reads.
@@ -35,6 +34,9 @@ enum Command {
     /// Draw what the tables hold: SVG, PNG and CSV of each figure
     #[cfg(feature = "plot")]
     Plot(figures::PlotArgs),
+    /// Compute how far numbers that should agree do not: CSV, and SVG and PNG of each study
+    #[cfg(feature = "study")]
+    Study(figures::StudyArgs),
 }
 
 #[derive(Args)]
@@ -63,6 +65,8 @@ pub(crate) fn run() -> ExitCode {
         Command::Mie(args) => mie::solve(&args),
         #[cfg(feature = "plot")]
         Command::Plot(args) => figures::draw(&args),
+        #[cfg(feature = "study")]
+        Command::Study(args) => figures::study(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -81,7 +85,7 @@ fn say(line: &str) {
 /// The path of a table, padded so that what follows stands in columns.
 fn padded(args: &BuildArgs, name: &str) -> String {
     let path = |name: &str| args.data.join(name).display().to_string();
-    let width = Kind::ALL.iter().map(|kind| path(&kind.file_name()).chars().count()).max().unwrap_or(0);
+    let width = Target::all().into_iter().map(|target| path(&target.file_name()).chars().count()).max().unwrap_or(0);
     format!("{:width$}", path(name))
 }
 
@@ -89,7 +93,7 @@ fn build_tables(args: &BuildArgs) -> Result<(), String> {
     let start = Instant::now();
     let progress = |built: &Built| {
         if !args.quiet {
-            let path = padded(args, &built.kind.file_name());
+            let path = padded(args, &built.target.file_name());
             say(&format!("{path}  {:>9}  {}", size(built.bytes), seconds(built.time)));
         }
     };
@@ -106,7 +110,7 @@ fn check_tables(args: &BuildArgs) -> Result<(), String> {
     let report = build::check(&args.raw_data, &args.data).map_err(|e| e.to_string())?;
     if !args.quiet {
         for table in &report.tables {
-            let path = padded(args, &table.kind.file_name());
+            let path = padded(args, &table.target.file_name());
             let verdict = if table.differences.is_empty() { "as rebuilt" } else { "differs" };
             say(&format!("{path}  {verdict:<10}  largest relative deviation {:.1e}", table.largest_relative));
             for difference in &table.differences {
@@ -124,7 +128,7 @@ fn check_tables(args: &BuildArgs) -> Result<(), String> {
 /// One sentence on a check that failed.
 fn verdict(args: &BuildArgs, report: &CheckReport) -> String {
     let bad: Vec<String> =
-        report.tables.iter().filter(|t| !t.differences.is_empty()).map(|t| t.kind.file_name()).collect();
+        report.tables.iter().filter(|t| !t.differences.is_empty()).map(|t| t.target.file_name()).collect();
     let mut parts = Vec::new();
     if !bad.is_empty() {
         parts.push(format!("{} not what {} makes", bad.join(", "), args.raw_data.display()));

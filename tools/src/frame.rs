@@ -30,6 +30,14 @@ impl Frame {
         &self.0
     }
 
+    /// The values of a column; a missing value is NaN.
+    ///
+    /// # Errors
+    /// [`PolarsError`] if there is no such column.
+    pub fn column(&self, name: &str) -> Result<Vec<f64>, PolarsError> {
+        Ok(self.0.column(name)?.f64()?.iter().map(|value| value.unwrap_or(f64::NAN)).collect())
+    }
+
     /// The frame as CSV: a header row of the names, then the rows; a missing value is empty.
     ///
     /// # Errors
@@ -57,6 +65,9 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines, ["x_m,y_m2", "0.0,", "0.3333333,4.5e-31"]);
         assert_eq!(frame.data().height(), 2);
+        let y = frame.column("y_m2").expect("there");
+        assert!(y[0].is_nan() && y[1] == 4.5e-31);
+        assert!(frame.column("z").is_err());
     }
 
     #[test]

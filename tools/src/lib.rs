@@ -4,6 +4,7 @@
 //! [`build`] writes the tables; [`inspect`] puts one into words; `plot` draws what the tables hold
 //! and `study` compares, each behind a feature of its name.
 
+pub mod aerosol;
 pub mod build;
 #[cfg(any(feature = "plot", feature = "study"))]
 pub mod frame;
@@ -15,3 +16,5 @@ pub mod molecular;
 pub mod plot;
 pub mod profile;
 pub mod raw;
+#[cfg(feature = "study")]
+pub mod study;

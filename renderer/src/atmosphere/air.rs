@@ -1,6 +1,6 @@
-//! The atmosphere of the tables: molecules and ozone of a month and a place.
+//! The atmosphere of the tables: molecules, ozone of a month and a place, an aerosol.
 
-use super::{Component, Medium, MediumError};
+use super::{Component, Haze, Medium, MediumError, REFERENCE_NM};
 use crate::data::Data;
 use crate::phase::Phase;
 use serde::{Deserialize, Serialize};
@@ -46,6 +46,24 @@ pub enum AirError {
     /// A source without ozone cannot be scaled to a column.
     #[error("the ozone profile of this source is empty and cannot be scaled to {0} DU")]
     NoOzone(f64),
+    /// A humidity for an aerosol whose table has only one.
+    #[error("humidity is {percent} %, but {biome} after {source_name} does not take up water: leave it out")]
+    Dry {
+        /// The biome.
+        biome: String,
+        /// The source of its optics.
+        source_name: String,
+        /// What was asked.
+        percent: f64,
+    },
+    /// A visibility beyond that of clean air.
+    #[error("visibility is {asked_km} km, but molecules alone allow no more than {clean_km:.0} km")]
+    TooClear {
+        /// What was asked.
+        asked_km: f64,
+        /// Visibility of molecules alone.
+        clean_km: f64,
+    },
 }
 
 /// Molecules and ozone against altitude, before any wavelength is chosen.
@@ -58,6 +76,7 @@ pub struct Air {
     top_m: f64,
     rayleigh: Rayleigh,
     cross_section: OzoneCrossSection,
+    haze: Option<Haze>,
 }
 
 impl Air {
@@ -89,7 +108,28 @@ impl Air {
             top_m: settings.top_m,
             rayleigh: data.rayleigh.clone(),
             cross_section: data.ozone_cross_section.clone(),
+            haze: None,
         })
+    }
+
+    /// The same air with an aerosol in it.
+    #[must_use]
+    pub fn with_haze(self, haze: Option<Haze>) -> Self {
+        Self { haze, ..self }
+    }
+
+    /// Its aerosol.
+    #[must_use]
+    pub fn haze(&self) -> Option<&Haze> {
+        self.haze.as_ref()
+    }
+
+    /// Extinction coefficient of the molecules at the ground at 550 nm in m^-1.
+    ///
+    /// # Errors
+    /// [`AirError::Table`] if the tables do not reach there.
+    pub fn ground_extinction(&self) -> Result<f64, AirError> {
+        Ok(self.density.at(0.0)? * self.rayleigh.cross_section_m2.at(REFERENCE_NM)?)
     }
 
     /// Vertical ozone column in Dobson units.
@@ -131,6 +171,9 @@ impl Air {
                 absorption: lanes(sigma)?,
                 phase: phase.clone(),
             });
+        }
+        if let Some(haze) = &self.haze {
+            components.extend(haze.components(wavelengths_nm)?);
         }
         Ok(Medium::new(components, self.top_m)?)
     }

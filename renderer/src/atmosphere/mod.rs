@@ -3,10 +3,12 @@
 //!
 //! A coefficient is a number density times a cross-section, C(z) sigma(lambda),
 //! and a [`Medium`] is a sum of such [`Component`]s: molecules, ozone (three, since its
-//! cross-section is a polynomial in temperature), later aerosols.
+//! cross-section is a polynomial in temperature), the species of an aerosol.
 
 mod air;
+mod haze;
 mod medium;
 
 pub use air::{Air, AirError, AirSettings, OzoneSource};
+pub use haze::{Amount, Haze, HazePhase, HazeSettings, KOSCHMIEDER, REFERENCE_NM};
 pub use medium::{Component, Local, MAX_COMPONENTS, Medium, MediumError, Shell};

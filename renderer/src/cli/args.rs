@@ -1,12 +1,13 @@
 //! Flags, and how they change a scene.
 
-use crate::atmosphere::OzoneSource;
+use crate::atmosphere::{HazePhase, OzoneSource};
 use crate::cases::Tier;
-use crate::scene::{Albedo, Biome, CameraKind, Scene, SceneError};
+use crate::scene::{Albedo, CameraKind, Scene, SceneError, word};
 use crate::spectrum::Wavelengths;
 use crate::transport::Method;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use tables::views::{AerosolSource, Biome};
 
 /// Flags of `airlight render`.
 #[derive(Debug, Args)]
@@ -116,26 +117,33 @@ pub(super) struct RenderArgs {
     pub aerosol: AerosolArgs,
 }
 
-/// Aerosols: their names are kept, and anything but none is refused by this version.
+/// What kind of aerosol, and how much.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Aerosols (this version renders none)")]
+#[command(next_help_heading = "Aerosol")]
 pub(super) struct AerosolArgs {
-    /// Kind of aerosol [default: none]
-    #[arg(long, value_name = "NAME")]
-    pub biome: Option<Biome>,
-    /// Where its optics come from
-    #[arg(long)]
+    /// Kind of aerosol: background, desert-dust, maritime-clean, maritime-mineral, polar-antarctic,
+    /// polar-arctic, remote-continental, rural, urban or none [default: none]
+    #[arg(long, value_name = "NAME", value_parser = biome)]
+    pub biome: Option<BiomeName>,
+    /// Where its optics come from: opac (Hess et al. 1998, plausible by day) or jaenicke (Jaenicke
+    /// 1993 as in the thesis, hazy) [default: opac]
+    #[arg(long, value_name = "NAME", value_parser = word::source)]
     pub aerosol_source: Option<AerosolSource>,
-    /// Relative humidity in percent
+    /// Relative humidity in percent of the aerosol that takes up water, 0 to 99 [default: 80 in the
+    /// boundary layer]
     #[arg(long, value_name = "PERCENT")]
     pub humidity: Option<f64>,
-    /// Optical depth at 550 nm
+    /// Phase function of the aerosol: mie or hg (Henyey-Greenstein of the same asymmetry) [default: mie]
+    #[arg(long, value_name = "NAME")]
+    pub phase: Option<PhaseName>,
+    /// Amount as vertical optical depth at 550 nm, 0 to 20 [default: the type's own amount]
     #[arg(long, value_name = "X", conflicts_with_all = ["visibility", "turbidity"])]
     pub aod: Option<f64>,
-    /// Visibility in km
+    /// Amount as visibility at the ground in km, 0.05 to 400: 3.912 over the extinction at 550 nm,
+    /// molecules included
     #[arg(long, value_name = "KM", conflicts_with = "turbidity")]
     pub visibility: Option<f64>,
-    /// Turbidity
+    /// Amount as a multiple of the type's own, 0 to 1000
     #[arg(long, value_name = "X")]
     pub turbidity: Option<f64>,
 }
@@ -223,10 +231,27 @@ pub(super) enum Switch {
     Off,
 }
 
+/// A biome, or none of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BiomeName(Option<Biome>);
+
+fn biome(text: &str) -> Result<BiomeName, String> {
+    word::biome(text).map(BiomeName)
+}
+
 #[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum AerosolSource {
-    Opac,
-    Jaenicke,
+pub(super) enum PhaseName {
+    Mie,
+    Hg,
+}
+
+impl From<PhaseName> for HazePhase {
+    fn from(name: PhaseName) -> Self {
+        match name {
+            PhaseName::Mie => Self::Mie,
+            PhaseName::Hg => Self::HenyeyGreenstein,
+        }
+    }
 }
 
 /// A share: `1%` or `0.01`.
@@ -248,29 +273,11 @@ fn pixel(text: &str) -> Result<(u32, u32), String> {
     Ok((number(parts.0)?, number(parts.1)?))
 }
 
-impl AerosolArgs {
-    /// Refuses the flags that nothing answers yet, rather than to ignore them.
-    fn refuse(&self) -> Result<(), SceneError> {
-        let given = [
-            ("--aerosol-source", self.aerosol_source.is_some()),
-            ("--humidity", self.humidity.is_some()),
-            ("--aod", self.aod.is_some()),
-            ("--visibility", self.visibility.is_some()),
-            ("--turbidity", self.turbidity.is_some()),
-        ];
-        match given.iter().find(|(_, given)| *given) {
-            None => Ok(()),
-            Some((flag, _)) => {
-                Err(SceneError::Refused(format!("this version renders molecules and ozone only: leave out {flag}")))
-            }
-        }
-    }
-}
-
 impl RenderArgs {
     /// The scene of the flags laid over `base`, validated.
     pub(super) fn scene(&self, base: Scene) -> Result<Scene, SceneError> {
-        self.aerosol.refuse()?;
+        // An amount on the command line replaces that of the scene, of whichever kind.
+        let amount = self.aerosol.aod.or(self.aerosol.visibility).or(self.aerosol.turbidity).is_some();
         let scene = Scene {
             altitude_km: self.altitude.unwrap_or(base.altitude_km),
             top_km: self.top.unwrap_or(base.top_km),
@@ -281,7 +288,13 @@ impl RenderArgs {
             latitude_deg: self.latitude.unwrap_or(base.latitude_deg),
             ozone_source: self.ozone_source.map_or(base.ozone_source, Into::into),
             ozone_du: self.ozone.or(base.ozone_du),
-            biome: self.aerosol.biome.unwrap_or(base.biome),
+            biome: self.aerosol.biome.map_or(base.biome, |name| name.0),
+            aerosol_source: self.aerosol.aerosol_source.unwrap_or(base.aerosol_source),
+            humidity_percent: self.aerosol.humidity.or(base.humidity_percent),
+            aod: self.aerosol.aod.or(base.aod.filter(|_| !amount)),
+            visibility_km: self.aerosol.visibility.or(base.visibility_km.filter(|_| !amount)),
+            turbidity: self.aerosol.turbidity.or(base.turbidity.filter(|_| !amount)),
+            phase: self.aerosol.phase.map_or(base.phase, Into::into),
             albedo: self.albedo.clone().unwrap_or(base.albedo),
             wavelengths_nm: self.wavelengths.clone().unwrap_or(base.wavelengths_nm),
             camera: self.camera.unwrap_or(base.camera),
@@ -345,8 +358,8 @@ mod tests {
         let refusal = |flags| scene(flags).expect_err("refused");
         assert!(refusal("--camera fishey").contains("fisheye"));
         assert!(refusal("--biome urbn").contains("urban"));
-        assert!(refusal("--biome urban").contains("molecules and ozone only"));
-        assert!(refusal("--aod 0.1").contains("leave out --aod"));
+        assert!(refusal("--aod 0.1").contains("name its biome"));
+        assert!(refusal("--biome urban --humidity 120").contains("0 to 99 %"));
         assert!(refusal("--aod 0.1 --turbidity 3").contains("cannot be used with"));
         assert!(refusal("--sun-elevation 100").contains("-90 to 90 degrees"));
         assert!(refusal("--error 200%").contains("0.001% to 100%"));

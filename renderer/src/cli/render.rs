@@ -18,6 +18,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     let data = Data::load(&args.data).map_err(Failure::error)?;
     let sky = Sky::new(&scene, &data).map_err(|error| match error {
         RenderError::Scene(error) => error.into(),
+        RenderError::Air(error) => Failure::usage(error),
         other => Failure::error(other),
     })?;
     if let Some((x, y)) = args.pixel {
@@ -48,7 +49,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
 
     let picture = Picture { film: &rendering.film, disc: &disc, colour: sky.colour() };
     let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(&picture));
-    let attributes = receipt::receipt(&scene, &data, &sky, &rendering, &summary, exposure_ev);
+    let attributes = receipt::receipt(&scene, &sky, &rendering, &summary, exposure_ev);
     let spectral = args.spectral.then_some(scene.wavelengths_nm.nm());
     let exr = exr::encode(&picture, spectral, &attributes).map_err(Failure::error)?;
     let png = png::encode(&picture, exposure_ev).map_err(Failure::error)?;
@@ -131,12 +132,24 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering) 
     println!("sun         elevation {} degrees, azimuth {} degrees", scene.sun_elevation_deg, scene.sun_azimuth_deg);
     println!(
         "air         molecules and ozone {:.1} DU (month {}, latitude {}), top {} km, ground albedo {}",
-        sky.ozone_du(),
+        sky.air().ozone_du(),
         scene.month,
         scene.latitude_deg,
         scene.top_km,
         scene.albedo
     );
+    if let (Some(biome), Some(haze)) = (scene.biome, sky.air().haze()) {
+        let humidities: Vec<String> =
+            haze.humidities_percent().iter().map(|(name, rh)| format!("{} {rh} %", name.replace('_', " "))).collect();
+        println!(
+            "aerosol     {biome} ({}), optical depth {:.3} at 550 nm, {:.3} times the type's own, visibility {:.1} km",
+            scene.aerosol_source,
+            haze.optical_depth(),
+            haze.factor(),
+            haze.visibility_km()
+        );
+        println!("            relative humidity: {}", humidities.join(", "));
+    }
     let of = |Estimate { mean, error }: Estimate, unit: &str| {
         let spread = if mean > 0.0 { format!(" (+- {})", percent(error / mean)) } else { String::new() };
         format!("{} {unit}{spread}", amount(mean))

@@ -16,6 +16,7 @@ pub use summary::Summary;
 
 use crate::atmosphere::AirError;
 use crate::camera::Camera;
+use crate::data::DataError;
 use crate::film::{Errors, Film, Row};
 use crate::sampling::Sampler;
 use crate::scene::{Scene, SceneError};
@@ -34,6 +35,9 @@ pub enum RenderError {
     /// The atmosphere cannot be made.
     #[error(transparent)]
     Air(#[from] AirError),
+    /// A table that only this scene needs is absent or cannot be used.
+    #[error(transparent)]
+    Data(#[from] DataError),
     /// A table does not reach.
     #[error(transparent)]
     Table(#[from] TableError),

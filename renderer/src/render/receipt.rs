@@ -1,7 +1,6 @@
 //! What a picture says about how it was made.
 
 use super::{Rendering, Sky, Summary};
-use crate::data::Data;
 use crate::film::exr::Attribute;
 use crate::scene::Scene;
 
@@ -14,18 +13,18 @@ pub const SCENE: &str = "airlight.scene";
 #[must_use]
 pub fn receipt(
     scene: &Scene,
-    data: &Data,
     sky: &Sky,
     rendering: &Rendering,
     summary: &Summary,
     exposure_ev: f64,
 ) -> Vec<(String, Attribute)> {
     let tables: Vec<String> =
-        data.identities.iter().map(|t| format!("{} {:08x} {}", t.file, t.checksum, t.title)).collect();
+        sky.identities().iter().map(|t| format!("{} {:08x} {}", t.file, t.checksum, t.title)).collect();
     let film = &rendering.film;
     let text = |value: String| Attribute::Text(value);
     let samples = |n: u32| Attribute::Integer(i32::try_from(n).unwrap_or(i32::MAX));
-    [
+    let haze = sky.air().haze();
+    let mut attributes = vec![
         ("airlight.version", text(format!("airlight {}", env!("CARGO_PKG_VERSION")))),
         (SCENE, text(scene.to_json())),
         ("airlight.seed", text(scene.seed.to_string())),
@@ -35,7 +34,7 @@ pub fn receipt(
         ("airlight.error", Attribute::Number(rendering.errors.relative)),
         ("airlight.error_median_luminance", Attribute::Number(rendering.errors.median_luminance)),
         ("airlight.error_median_spectral", Attribute::Number(rendering.errors.median_spectral)),
-        ("airlight.ozone_du", Attribute::Number(sky.ozone_du())),
+        ("airlight.ozone_du", Attribute::Number(sky.air().ozone_du())),
         ("airlight.illuminance_sun_lux", Attribute::Number(summary.sun_lux)),
         ("airlight.illuminance_sky_lux", Attribute::Number(summary.sky_lux.mean)),
         ("airlight.illuminance_sky_lux_error", Attribute::Number(summary.sky_lux.error)),
@@ -43,7 +42,10 @@ pub fn receipt(
         ("airlight.zenith_luminance_cd_m2_error", Attribute::Number(summary.zenith_cd_m2.error)),
         ("airlight.exposure_ev", Attribute::Number(exposure_ev)),
         ("airlight.tables", text(tables.join("\n"))),
-    ]
-    .map(|(name, value)| (name.into(), value))
-    .to_vec()
+    ];
+    if let Some(haze) = haze {
+        attributes.push(("airlight.aerosol_optical_depth_550nm", Attribute::Number(haze.optical_depth())));
+        attributes.push(("airlight.visibility_km", Attribute::Number(haze.visibility_km())));
+    }
+    attributes.into_iter().map(|(name, value)| (name.into(), value)).collect()
 }

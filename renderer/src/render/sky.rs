@@ -1,8 +1,8 @@
 //! A scene turned into something that answers: what arrives from a direction?
 
 use super::RenderError;
-use crate::atmosphere::{Air, AirSettings, Medium};
-use crate::data::Data;
+use crate::atmosphere::{Air, AirSettings, Haze, Medium};
+use crate::data::{Data, Identity};
 use crate::geometry::{Place, Shape};
 use crate::light::{SunDisc, solar_angular_radius};
 use crate::sampling::Sampler;
@@ -22,8 +22,9 @@ pub struct Sky {
     place: Place,
     colour: Colour,
     irradiance_w_m2_nm: Vec<f64>,
-    ozone_du: f64,
+    air: Air,
     sun_direction: DVec3,
+    identities: Vec<Identity>,
 }
 
 impl Sky {
@@ -44,6 +45,16 @@ impl Sky {
                 top_m: scene.top_km * KM,
             },
         )?;
+        let mut identities = data.identities.clone();
+        let haze = match scene.biome {
+            None => None,
+            Some(biome) => {
+                let (aerosol, identity) = data.aerosol(scene.aerosol_source, biome)?;
+                identities.push(identity);
+                Some(Haze::new(aerosol, scene.haze(), air.ground_extinction()?)?)
+            }
+        };
+        let air = air.with_haze(haze);
         let sun_direction = scene.sun_direction();
         let parts = Parts { wavelengths, albedo: &albedo, air: &air, data, method: scene.method, sun_direction };
         let carriers = wavelengths.packets().into_iter().map(|packet| {
@@ -61,8 +72,9 @@ impl Sky {
             place: Place::above(scene.altitude_km * KM),
             colour: Colour::new(&data.sun, &data.observer, wavelengths)?,
             irradiance_w_m2_nm: irradiance.collect::<Result<_, _>>()?,
-            ozone_du: air.ozone_du(),
+            air,
             sun_direction,
+            identities,
         })
     }
 
@@ -123,10 +135,16 @@ impl Sky {
         self.irradiance_w_m2_nm.len()
     }
 
-    /// Vertical ozone column in Dobson units.
+    /// The atmosphere: its ozone, its aerosol.
     #[must_use]
-    pub fn ozone_du(&self) -> f64 {
-        self.ozone_du
+    pub fn air(&self) -> &Air {
+        &self.air
+    }
+
+    /// The tables that were used.
+    #[must_use]
+    pub fn identities(&self) -> &[Identity] {
+        &self.identities
     }
 
     /// Unit vector to the sun's centre in the observer's frame.

@@ -6,10 +6,11 @@
 mod names;
 mod validate;
 
-pub use names::{Biome, CameraKind, nearest};
+pub(crate) use names::word;
+pub use names::{CameraKind, nearest};
 pub use validate::SceneError;
 
-use crate::atmosphere::OzoneSource;
+use crate::atmosphere::{Amount, HazePhase, HazeSettings, OzoneSource};
 use crate::camera::{Camera, Projection, direction_at};
 use crate::data::Data;
 use crate::spectrum::Wavelengths;
@@ -18,6 +19,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 use tables::units::{EARTH_RADIUS_M, KM};
+use tables::views::{AerosolSource, Biome};
 
 /// Samples per pixel where neither a number nor an error is asked for.
 pub const DEFAULT_SPP: u32 = 64;
@@ -44,8 +46,23 @@ pub struct Scene {
     pub ozone_source: OzoneSource,
     /// Ozone column in Dobson units, 0 to 1000; the source's own if not given.
     pub ozone_du: Option<f64>,
-    /// Aerosols. Only none can be rendered so far.
-    pub biome: Biome,
+    /// Kind of aerosol, or none.
+    #[serde(with = "names::word::biome_or_none")]
+    pub biome: Option<Biome>,
+    /// Whose optics the aerosol has.
+    #[serde(with = "names::word::aerosol_source")]
+    pub aerosol_source: AerosolSource,
+    /// Relative humidity in percent of the aerosol that takes up water, 0 to 99; its own if not given.
+    pub humidity_percent: Option<f64>,
+    /// Vertical optical depth of the aerosol at 550 nm, 0 to 20. This, the visibility
+    /// and the turbidity exclude each other; without them the type's own amount.
+    pub aod: Option<f64>,
+    /// Visibility at the ground in km, 0.05 to 400.
+    pub visibility_km: Option<f64>,
+    /// How many times the type's own amount, 0 to 1000.
+    pub turbidity: Option<f64>,
+    /// Where the aerosol scatters to.
+    pub phase: HazePhase,
     /// Reflectance of the ground.
     pub albedo: Albedo,
     /// Wavelengths in nm. Default: 16 from 380 to 780 nm.
@@ -99,7 +116,13 @@ impl Default for Scene {
             latitude_deg: 45.0,
             ozone_source: OzoneSource::McPetersLabow,
             ozone_du: None,
-            biome: Biome::None,
+            biome: None,
+            aerosol_source: AerosolSource::Opac,
+            humidity_percent: None,
+            aod: None,
+            visibility_km: None,
+            turbidity: None,
+            phase: HazePhase::Mie,
             albedo: Albedo::Grey(0.1),
             wavelengths_nm: Wavelengths::default(),
             camera: CameraKind::Fisheye,
@@ -154,6 +177,18 @@ impl Scene {
     #[must_use]
     pub fn in_space(&self) -> bool {
         self.altitude_km >= self.top_km
+    }
+
+    /// How much of the aerosol there is, and in which state.
+    #[must_use]
+    pub fn haze(&self) -> HazeSettings {
+        let amount = match (self.aod, self.visibility_km, self.turbidity) {
+            (Some(depth), ..) => Amount::OpticalDepth(depth),
+            (_, Some(km), _) => Amount::VisibilityKm(km),
+            (.., Some(factor)) => Amount::Turbidity(factor),
+            _ => Amount::Own,
+        };
+        HazeSettings { humidity_percent: self.humidity_percent, amount, phase: self.phase }
     }
 
     /// Unit vector to the sun's centre in the observer's frame.

@@ -1,6 +1,6 @@
 //! What a scene may say.
 
-use super::{Albedo, Biome, CameraKind, Scene, nearest};
+use super::{Albedo, CameraKind, Scene, nearest};
 use crate::film::Film;
 use crate::spectrum::SpectrumError;
 use tables::TableError;
@@ -78,11 +78,6 @@ impl Scene {
     /// # Errors
     /// The [`SceneError`] of the first thing that is wrong.
     pub fn validate(&self) -> Result<(), SceneError> {
-        if self.biome != Biome::None {
-            return Err(SceneError::Refused(
-                "this version renders molecules and ozone only: leave out --biome, or say none".into(),
-            ));
-        }
         range("altitude", self.altitude_km, 0.0, 1e6, " km")?;
         range("top", self.top_km, 1.0, 120.0, " km")?;
         range("sun-elevation", self.sun_elevation_deg, -90.0, 90.0, " degrees")?;
@@ -93,10 +88,29 @@ impl Scene {
         if let Albedo::Grey(value) = self.albedo {
             range("albedo", value, 0.0, 1.0, "")?;
         }
+        self.validate_aerosol()?;
         self.validate_view()?;
         optional("exposure", self.exposure_ev, -30.0, 30.0, " EV")?;
         optional("spp", self.spp.map(f64::from), 1.0, 1e6, "")?;
         optional("error", self.error, 1e-5, 1.0, "")
+    }
+
+    fn validate_aerosol(&self) -> Result<(), SceneError> {
+        optional("humidity", self.humidity_percent, 0.0, 99.0, " %")?;
+        optional("aod", self.aod, 0.0, 20.0, "")?;
+        optional("visibility", self.visibility_km, 0.05, 400.0, " km")?;
+        optional("turbidity", self.turbidity, 0.0, 1000.0, "")?;
+        let given = [("humidity", self.humidity_percent), ("aod", self.aod)];
+        let given = given.into_iter().chain([("visibility", self.visibility_km), ("turbidity", self.turbidity)]);
+        let given: Vec<&str> = given.filter_map(|(name, value)| value.map(|_| name)).collect();
+        let amounts = given.iter().filter(|name| **name != "humidity").count();
+        match given.first() {
+            Some(name) if self.biome.is_none() => {
+                Err(SceneError::Refused(format!("{name} says something of an aerosol: name its biome too")))
+            }
+            _ if amounts > 1 => Err(SceneError::Refused("aod, visibility and turbidity exclude each other".into())),
+            _ => Ok(()),
+        }
     }
 
     fn validate_view(&self) -> Result<(), SceneError> {
@@ -144,6 +158,7 @@ fn optional(what: &'static str, value: Option<f64>, low: f64, high: f64, unit: &
 #[cfg(test)]
 mod tests {
     use super::*;
+    use tables::views::Biome;
 
     fn refusal(change: impl FnOnce(&mut Scene)) -> String {
         let mut scene = Scene::default();
@@ -173,7 +188,9 @@ mod tests {
 
     #[test]
     fn what_cannot_be_rendered_is_refused_with_a_sentence() {
-        assert!(refusal(|s| s.biome = Biome::Urban).contains("molecules and ozone only"));
+        assert!(refusal(|s| s.aod = Some(0.1)).contains("name its biome"));
+        let twice = |s: &mut Scene| (s.biome, s.aod, s.turbidity) = (Some(Biome::Urban), Some(0.1), Some(2.0));
+        assert!(refusal(twice).contains("exclude each other"));
         let latlong = |s: &mut Scene| (s.camera, s.fov_deg) = (CameraKind::Latlong, Some(90.0));
         assert!(refusal(latlong).contains("whole sphere"));
         let large = |s: &mut Scene| (s.width, s.height) = (Some(16_384), Some(16_384));

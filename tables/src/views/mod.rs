@@ -5,11 +5,13 @@
 //! The names and units of axes and fields stand here and nowhere else; whoever
 //! builds a table of a kind makes it so that its view accepts it.
 
+mod aerosol;
 mod air;
 mod ground;
 mod light;
 mod ozone;
 
+pub use aerosol::{Aerosol, AerosolSource, Biome, COSINE, Optics, REFERENCE_WAVELENGTH_NM, Species, integral, suffix};
 pub use air::{Rayleigh, StandardAtmosphere};
 pub use ground::GroundAlbedo;
 pub use light::{Observer, Sun};

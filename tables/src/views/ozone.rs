@@ -152,6 +152,8 @@ impl OzoneLayers {
 fn non_negative(field: &Field) -> Result<(), TableError> {
     match field.values.iter().find(|v| **v < 0.0) {
         None => Ok(()),
-        Some(v) => Err(TableError::Inconsistent(format!("field {:?} holds {v}; a density is not negative", field.name))),
+        Some(v) => {
+            Err(TableError::Inconsistent(format!("field {:?} holds {v}; a density is not negative", field.name)))
+        }
     }
 }

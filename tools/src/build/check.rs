@@ -1,16 +1,16 @@
 //! Whether `data/` is what `raw-data/` makes: a rebuild in memory, compared value by value.
 
-use super::BuildError;
+use super::{BuildError, Maker, Target};
 use crate::raw::RawData;
 use rayon::prelude::*;
 use std::fmt;
 use std::path::Path;
-use tables::{Axis, Field, Kind, Table, TableError};
+use tables::{Axis, Field, Table, TableError};
 
 /// What a check found.
 #[derive(Debug)]
 pub struct CheckReport {
-    /// One entry per kind, in the order of [`Kind::ALL`].
+    /// One entry per file, in the order of [`Target::all`].
     pub tables: Vec<TableCheck>,
     /// Files of the folder that no build writes, sorted.
     pub foreign: Vec<String>,
@@ -20,7 +20,7 @@ pub struct CheckReport {
 #[derive(Debug)]
 pub struct TableCheck {
     /// Which one.
-    pub kind: Kind,
+    pub target: Target,
     /// Largest |found / rebuilt - 1| of its values, also where all are within their tolerance.
     pub largest_relative: f64,
     /// Everything that differs by more than it may.
@@ -94,22 +94,23 @@ impl fmt::Display for Difference {
 pub fn check(raw_dir: &Path, data_dir: &Path) -> Result<CheckReport, BuildError> {
     let raw = RawData::from_dir(raw_dir)?;
     let foreign = foreign_files(data_dir).map_err(|source| BuildError::Folder { path: data_dir.into(), source })?;
-    let tables: Vec<Result<TableCheck, TableError>> = Kind::ALL
-        .par_iter()
-        .map(|&kind| {
-            let expected = super::table(&raw, kind)?;
-            let path = data_dir.join(kind.file_name());
+    let maker = Maker::new(&raw)?;
+    let tables: Vec<Result<TableCheck, TableError>> = Target::all()
+        .into_par_iter()
+        .map(|target| {
+            let expected = maker.table(target)?;
+            let path = data_dir.join(target.file_name());
             if !path.exists() {
-                return Ok(TableCheck { kind, largest_relative: 0.0, differences: vec![Difference::Missing] });
+                return Ok(TableCheck { target, largest_relative: 0.0, differences: vec![Difference::Missing] });
             }
             Ok(match tables::file::read(&path) {
                 Ok(found) => TableCheck {
-                    kind,
+                    target,
                     largest_relative: largest_relative(&expected, &found),
                     differences: differences(&expected, &found),
                 },
                 Err(error) => {
-                    TableCheck { kind, largest_relative: 0.0, differences: vec![Difference::Unreadable(error)] }
+                    TableCheck { target, largest_relative: 0.0, differences: vec![Difference::Unreadable(error)] }
                 }
             })
         })
@@ -118,7 +119,7 @@ pub fn check(raw_dir: &Path, data_dir: &Path) -> Result<CheckReport, BuildError>
 }
 
 fn foreign_files(data_dir: &Path) -> std::io::Result<Vec<String>> {
-    let known: Vec<String> = Kind::ALL.iter().map(|kind| kind.file_name()).collect();
+    let known: Vec<String> = Target::all().into_iter().map(Target::file_name).collect();
     let mut foreign = Vec::new();
     for entry in std::fs::read_dir(data_dir)? {
         let name = entry?.file_name().to_string_lossy().into_owned();

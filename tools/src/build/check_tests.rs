@@ -1,6 +1,6 @@
 use super::*;
 use std::collections::BTreeMap;
-use tables::{Precision, Provenance, Scale, Tolerance};
+use tables::{Kind, Precision, Provenance, Scale, Tolerance};
 
 fn sample() -> Table {
     let provenance = Provenance {

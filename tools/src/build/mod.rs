@@ -3,6 +3,7 @@
 //! The same inputs give the same bytes: nothing of the clock, the machine or the order of threads
 //! enters a table. Every table is read back through the `tables` crate before it is reported.
 
+mod aerosol;
 mod air;
 mod check;
 mod ground;
@@ -15,6 +16,7 @@ use crate::raw::{RawData, RawError};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use tables::views::{Aerosol, AerosolSource, Biome};
 use tables::{Axis, Field, Kind, Precision, Scale, Table, TableError, Tolerance, views};
 
 /// Why tables could not be made.
@@ -44,30 +46,58 @@ pub enum BuildError {
     },
 }
 
+/// One file of `data/`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target {
+    /// The only table of a kind.
+    Single(Kind),
+    /// The aerosol of a source and biome.
+    Aerosol(AerosolSource, Biome),
+}
+
+impl Target {
+    /// Every file, in the order in which `data/` is listed: [`Kind::ALL`], then the aerosols by source and biome.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let aerosols = AerosolSource::ALL.into_iter().flat_map(|s| Biome::ALL.map(|b| Self::Aerosol(s, b)));
+        Kind::ALL.into_iter().map(Self::Single).chain(aerosols).collect()
+    }
+
+    /// Name of the file.
+    #[must_use]
+    pub fn file_name(self) -> String {
+        match self {
+            Self::Single(kind) => kind.file_name(),
+            Self::Aerosol(source, biome) => Aerosol::file_name(source, biome),
+        }
+    }
+}
+
 /// A table that was written and read back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Built {
     /// Which one.
-    pub kind: Kind,
+    pub target: Target,
     /// Size of the file.
     pub bytes: u64,
-    /// Time to compute, write and read back.
+    /// Time to compute, write and read back; the optics that several aerosols share are not counted.
     pub time: Duration,
 }
 
 /// Makes every table of `data_dir` from `raw_dir`, in parallel, and calls `progress` as each is
 /// finished. A file is replaced in one step: a run that fails leaves each table either new or as it
-/// was. The result is in the order of [`Kind::ALL`].
+/// was. The result is in the order of [`Target::all`].
 ///
 /// # Errors
 /// [`BuildError`], of the first table in that order that failed.
 pub fn build(raw_dir: &Path, data_dir: &Path, progress: impl Fn(&Built) + Sync) -> Result<Vec<Built>, BuildError> {
     let raw = RawData::from_dir(raw_dir)?;
     std::fs::create_dir_all(data_dir).map_err(|source| BuildError::Folder { path: data_dir.into(), source })?;
-    let results: Vec<Result<Built, BuildError>> = Kind::ALL
-        .par_iter()
-        .map(|&kind| {
-            let built = build_one(&raw, data_dir, kind)?;
+    let maker = Maker::new(&raw)?;
+    let results: Vec<Result<Built, BuildError>> = Target::all()
+        .into_par_iter()
+        .map(|target| {
+            let built = build_one(&maker, data_dir, target)?;
             progress(&built);
             Ok(built)
         })
@@ -75,23 +105,42 @@ pub fn build(raw_dir: &Path, data_dir: &Path, progress: impl Fn(&Built) + Sync) 
     results.into_iter().collect()
 }
 
-fn build_one(raw: &RawData, data_dir: &Path, kind: Kind) -> Result<Built, BuildError> {
+fn build_one(maker: &Maker, data_dir: &Path, target: Target) -> Result<Built, BuildError> {
     let start = Instant::now();
-    let path = data_dir.join(kind.file_name());
-    let table = table(raw, kind)?;
+    let path = data_dir.join(target.file_name());
+    let table = maker.table(target)?;
     let bytes = tables::file::write(&path, &table)?;
     let back = tables::file::read(&path)?;
     accept(&back).map_err(|e| e.at(&path))?;
     match check::differences(&table, &back).into_iter().next() {
-        None => Ok(Built { kind, bytes, time: start.elapsed() }),
+        None => Ok(Built { target, bytes, time: start.elapsed() }),
         Some(difference) => Err(BuildError::ReadBack { path, difference: Box::new(difference) }),
     }
 }
 
-/// The table of a kind, computed from the inputs.
+/// Computes tables from inputs, and what several of them share only once.
+struct Maker<'a> {
+    raw: &'a RawData,
+    aerosols: aerosol::Prepared,
+}
+
+impl<'a> Maker<'a> {
+    fn new(raw: &'a RawData) -> Result<Self, TableError> {
+        Ok(Self { raw, aerosols: aerosol::prepare(raw)? })
+    }
+
+    fn table(&self, target: Target) -> Result<Table, TableError> {
+        match target {
+            Target::Single(kind) => table(self.raw, kind),
+            Target::Aerosol(source, biome) => aerosol::table(self.raw, &self.aerosols, source, biome),
+        }
+    }
+}
+
+/// The table of a kind of which there is one, computed from the inputs.
 ///
 /// # Errors
-/// [`TableError`] if the inputs make no valid table of that kind.
+/// [`TableError`] if the inputs make no valid table of that kind, or for [`Kind::Aerosol`], of which there are many.
 pub fn table(raw: &RawData, kind: Kind) -> Result<Table, TableError> {
     match kind {
         Kind::StandardAtmosphere => air::standard_atmosphere(raw),
@@ -102,6 +151,7 @@ pub fn table(raw: &RawData, kind: Kind) -> Result<Table, TableError> {
         Kind::Sun => light::sun(raw),
         Kind::Observer => light::observer(raw),
         Kind::GroundAlbedo => ground::albedo(raw),
+        Kind::Aerosol => Err(TableError::Inconsistent("an aerosol table needs a source and a biome".into())),
     }
 }
 
@@ -116,6 +166,7 @@ fn accept(table: &Table) -> Result<(), TableError> {
         Kind::Sun => views::Sun::from_table(table).map(drop),
         Kind::Observer => views::Observer::from_table(table).map(drop),
         Kind::GroundAlbedo => views::GroundAlbedo::from_table(table).map(drop),
+        Kind::Aerosol => views::Aerosol::from_table(table).map(drop),
     }
 }
 

@@ -5,6 +5,8 @@ use clap::Args;
 use std::path::PathBuf;
 #[cfg(feature = "plot")]
 use tools::plot;
+#[cfg(feature = "study")]
+use tools::study;
 
 /// What to draw, from which tables, to where.
 #[cfg(feature = "plot")]
@@ -41,14 +43,51 @@ fn figure_names() -> clap::builder::PossibleValuesParser {
 /// Draws figures.
 #[cfg(feature = "plot")]
 pub(super) fn draw(args: &PlotArgs) -> Result<(), String> {
-    let settings =
-        plot::Settings { wavelength_nm: args.wavelength, month: args.month, latitude_deg: args.latitude };
+    let settings = plot::Settings { wavelength_nm: args.wavelength, month: args.month, latitude_deg: args.latitude };
     let wanted = |name: &plot::Name| args.figures.is_empty() || args.figures.iter().any(|f| f == name.as_str());
     for name in plot::Name::ALL.into_iter().filter(wanted) {
         let made = plot::make(name, plot::Data(&args.data), &settings).map_err(|e| e.to_string())?;
         let paths = plot::write(&made, name.as_str(), &args.out).map_err(|e| e.to_string())?;
         if !args.quiet {
             let paths = paths.map(|path| path.display().to_string());
+            say(&paths.join("  "));
+        }
+    }
+    Ok(())
+}
+
+/// What to compute, from which inputs, to where.
+#[cfg(feature = "study")]
+#[derive(Args)]
+pub(super) struct StudyArgs {
+    /// Folder of the measured inputs
+    #[arg(long, value_name = "DIR", default_value = "raw-data")]
+    raw_data: PathBuf,
+    /// Folder of the results; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "plots")]
+    out: PathBuf,
+    /// Studies; all if none is named
+    #[arg(value_name = "STUDY", value_parser = study_names())]
+    studies: Vec<String>,
+    /// Say nothing but errors
+    #[arg(long)]
+    quiet: bool,
+}
+
+#[cfg(feature = "study")]
+fn study_names() -> clap::builder::PossibleValuesParser {
+    study::Name::ALL.map(study::Name::as_str).into()
+}
+
+/// Computes studies, and draws them if the program can.
+#[cfg(feature = "study")]
+pub(super) fn study(args: &StudyArgs) -> Result<(), String> {
+    let wanted = |name: &study::Name| args.studies.is_empty() || args.studies.iter().any(|s| s == name.as_str());
+    for name in study::Name::ALL.into_iter().filter(wanted) {
+        let frame = study::make(name, &args.raw_data).map_err(|e| e.to_string())?;
+        let paths = study::write(name, &frame, &args.out).map_err(|e| e.to_string())?;
+        if !args.quiet {
+            let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
             say(&paths.join("  "));
         }
     }

@@ -2,8 +2,8 @@
 
 use super::MieError;
 
-/// Angles of one block: as many as there are registers for their sums.
-pub(super) const LANES: usize = 4;
+/// Orders that are summed at once.
+pub(super) const RUN: usize = 4;
 
 /// pi_n and tau_n at one angle, n = 1, 2, 3, ... in turn.
 ///
@@ -52,9 +52,10 @@ impl Functions {
 pub struct AngularTable {
     cosines: Vec<f64>,
     terms: usize,
-    /// For each block of [`LANES`] angles, for each n, both functions at these angles; the last block is
-    /// filled up with its last angle.
-    values: Vec<[[f64; LANES]; 2]>,
+    /// pi_n + tau_n at all angles, for each order, up to a whole number of runs.
+    plus: Vec<f64>,
+    /// pi_n - tau_n, the same.
+    minus: Vec<f64>,
 }
 
 impl AngularTable {
@@ -63,23 +64,17 @@ impl AngularTable {
     /// # Errors
     /// [`MieError::Cosine`] for a cosine outside -1..=1.
     pub fn new(cosines: &[f64], terms: usize) -> Result<Self, MieError> {
-        let mut values = Vec::with_capacity(cosines.len().div_ceil(LANES) * terms);
-        for block in cosines.chunks(LANES) {
-            let mut functions = Vec::with_capacity(LANES);
-            for lane in 0..LANES {
-                functions.push(Functions::new(block[lane.min(block.len() - 1)])?);
-            }
-            for _ in 0..terms {
-                let mut entry = [[0.0; LANES]; 2];
-                for (lane, functions) in functions.iter_mut().enumerate() {
-                    let (pi, tau) = functions.advance();
-                    entry[0][lane] = pi + tau;
-                    entry[1][lane] = pi - tau;
-                }
-                values.push(entry);
+        let mut functions = cosines.iter().map(|&c| Functions::new(c)).collect::<Result<Vec<_>, _>>()?;
+        let length = terms.next_multiple_of(RUN) * cosines.len();
+        let (mut plus, mut minus) = (Vec::with_capacity(length), Vec::with_capacity(length));
+        for _ in 0..terms.next_multiple_of(RUN) {
+            for functions in &mut functions {
+                let (pi, tau) = functions.advance();
+                plus.push(pi + tau);
+                minus.push(pi - tau);
             }
         }
-        Ok(Self { cosines: cosines.to_vec(), terms, values })
+        Ok(Self { cosines: cosines.to_vec(), terms, plus, minus })
     }
 
     /// Cosines of the angles.
@@ -94,9 +89,10 @@ impl AngularTable {
         self.terms
     }
 
-    /// The functions of each block, orders 1 and up.
-    pub(super) fn blocks(&self) -> impl Iterator<Item = &[[[f64; LANES]; 2]]> {
-        self.values.chunks(self.terms.max(1))
+    /// pi_n + tau_n and pi_n - tau_n of one run of orders after the other, each order's angles in a row.
+    pub(super) fn runs(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+        let length = (RUN * self.cosines.len()).max(1);
+        self.plus.chunks_exact(length).zip(self.minus.chunks_exact(length))
     }
 }
 

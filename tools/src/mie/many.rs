@@ -1,12 +1,13 @@
 //! A weighted sum over many spheres of one refractive index.
 
-use super::angular::LANES;
+use super::angular::RUN;
 use super::{AngularTable, MieError, RefractiveIndex, Solver};
+use num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// Spheres whose amplitudes are summed together, so that the angular functions of a block of angles are
-/// fetched once for all of them.
-const BATCH: usize = 16;
+/// Spheres whose amplitudes are summed together, so that each run of angular functions is fetched once for
+/// all of them.
+const BATCH: usize = 8;
 
 /// Sums over spheres i with weights w_i. Cross-sections are in units of the square of the wave number's
 /// inverse: multiply by (lambda / 2 pi)^2 for m^2.
@@ -78,26 +79,30 @@ pub fn sum(
             batch.push(Scaled::default());
         }
         batch[filled].weight = weight;
-        batch[filled].fill(sphere.a().iter().zip(sphere.b()));
+        batch[filled].fill(sphere.a().iter().zip(sphere.b()), angles.cosines().len());
         filled += 1;
         if filled == BATCH {
-            add_intensities(&batch, angles, &mut sums.intensity);
+            add_intensities(&mut batch, angles, &mut sums.intensity);
             filled = 0;
         }
     }
-    add_intensities(&batch[..filled], angles, &mut sums.intensity);
+    add_intensities(&mut batch[..filled], angles, &mut sums.intensity);
     Ok(sums)
 }
 
-/// Real and imaginary parts of (2n + 1) / (n (n + 1)) (a_n + b_n) and of the same with a_n - b_n.
+/// A sphere whose amplitudes are being summed.
 #[derive(Default)]
 struct Scaled {
     weight: f64,
+    /// Real and imaginary parts of (2n + 1) / (n (n + 1)) (a_n + b_n), then of the same with a_n - b_n; in runs,
+    /// the last filled up with zeros.
     coefficients: Vec<[f64; 4]>,
+    /// Real and imaginary part of S+ and of S- at each angle.
+    amplitudes: [Vec<f64>; 4],
 }
 
 impl Scaled {
-    fn fill<'a>(&mut self, ab: impl Iterator<Item = (&'a num_complex::Complex64, &'a num_complex::Complex64)>) {
+    fn fill<'a>(&mut self, ab: impl Iterator<Item = (&'a Complex64, &'a Complex64)>, angles: usize) {
         self.coefficients.clear();
         self.coefficients.extend(ab.enumerate().map(|(i, (a, b))| {
             let n = (i + 1) as f64;
@@ -105,35 +110,48 @@ impl Scaled {
             let (sum, difference) = ((a + b) * weight, (a - b) * weight);
             [sum.re, sum.im, difference.re, difference.im]
         }));
+        self.coefficients.resize(self.coefficients.len().next_multiple_of(RUN), [0.0; 4]);
+        for part in &mut self.amplitudes {
+            part.clear();
+            part.resize(angles, 0.0);
+        }
     }
 }
 
 /// With S+ = S1 + S2 = sum (a + b)(pi + tau) and S- = S1 - S2 = sum (a - b)(pi - tau), each times
 /// (2n + 1) / (n (n + 1)): (|S1|^2 + |S2|^2) / 2 = (|S+|^2 + |S-|^2) / 4.
-fn add_intensities(spheres: &[Scaled], angles: &AngularTable, intensity: &mut [f64]) {
-    for (block, out) in angles.blocks().zip(intensity.chunks_mut(LANES)) {
-        for sphere in spheres {
-            let [plus_re, plus_im, minus_re, minus_im] = amplitudes(block, &sphere.coefficients);
-            for (lane, out) in out.iter_mut().enumerate() {
-                let plus = plus_re[lane] * plus_re[lane] + plus_im[lane] * plus_im[lane];
-                let minus = minus_re[lane] * minus_re[lane] + minus_im[lane] * minus_im[lane];
-                *out += 0.25 * sphere.weight * (plus + minus);
+fn add_intensities(spheres: &mut [Scaled], angles: &AngularTable, intensity: &mut [f64]) {
+    let longest = spheres.iter().map(|sphere| sphere.coefficients.len() / RUN).max().unwrap_or(0);
+    for (run, (plus, minus)) in angles.runs().take(longest).enumerate() {
+        for Scaled { coefficients, amplitudes, .. } in spheres.iter_mut() {
+            let Some(c) = coefficients.get(run * RUN..(run + 1) * RUN) else { continue };
+            let of = |part: usize| std::array::from_fn(|order| c[order][part]);
+            let [plus_re, plus_im, minus_re, minus_im] = amplitudes;
+            add_run(plus_re, plus_im, plus, of(0), of(1));
+            add_run(minus_re, minus_im, minus, of(2), of(3));
+        }
+    }
+    for Scaled { weight, amplitudes, .. } in spheres {
+        for part in amplitudes {
+            for (sum, value) in intensity.iter_mut().zip(part) {
+                *sum += 0.25 * *weight * *value * *value;
             }
         }
     }
 }
 
-/// Real and imaginary parts of S+ and S- at the angles of a block.
-#[inline]
-fn amplitudes(block: &[[[f64; LANES]; 2]], coefficients: &[[f64; 4]]) -> [[f64; LANES]; 4] {
-    let mut sums = [[0.0; LANES]; 4];
-    for ([plus, minus], c) in block.iter().zip(coefficients) {
-        for lane in 0..LANES {
-            sums[0][lane] += c[0] * plus[lane];
-            sums[1][lane] += c[1] * plus[lane];
-            sums[2][lane] += c[2] * minus[lane];
-            sums[3][lane] += c[3] * minus[lane];
-        }
+/// Adds to `re` and `im`, at each angle, the functions of one run of orders times their coefficients. Slices of one
+/// length and a plain loop: this is what compilers turn into vector instructions.
+#[inline(never)]
+fn add_run(re: &mut [f64], im: &mut [f64], functions: &[f64], real: [f64; RUN], imaginary: [f64; RUN]) {
+    let angles = re.len();
+    let im = &mut im[..angles];
+    let (f0, rest) = functions.split_at(angles);
+    let (f1, rest) = rest.split_at(angles);
+    let (f2, f3) = rest.split_at(angles);
+    let f3 = &f3[..angles];
+    for j in 0..angles {
+        re[j] += (real[0] * f0[j] + real[1] * f1[j]) + (real[2] * f2[j] + real[3] * f3[j]);
+        im[j] += (imaginary[0] * f0[j] + imaginary[1] * f1[j]) + (imaginary[2] * f2[j] + imaginary[3] * f3[j]);
     }
-    sums
 }

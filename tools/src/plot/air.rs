@@ -20,8 +20,8 @@ pub(super) fn number_density(data: Data<'_>) -> Result<Plot, PlotError> {
     let figure = Figure {
         title: "US Standard Atmosphere 1976".into(),
         rows: vec![vec![
-            panel(Axis::logarithmic("number density of molecules / m⁻³", 1e17, 1e26, 2), density, BLUE).share(1.35),
-            panel(Axis::logarithmic("pressure / Pa", 1e-3, 1e6, 2), pressure, VERMILION),
+            panel(Axis::logarithmic("number density of molecules / m⁻³", 1e16, 1e26, 2), density, BLUE).share(1.35),
+            panel(Axis::logarithmic("pressure / Pa", 1e-4, 1e6, 2), pressure, VERMILION),
             panel(Axis::linear("temperature / K", 150.0, 400.0, 50.0), temperature, GREEN),
         ]],
     };

@@ -32,8 +32,6 @@ pub(super) enum Place {
     LeftOf,
     /// The anchor is above its middle.
     Below,
-    /// The anchor is below its middle.
-    Above,
     /// The anchor is its middle.
     Centred,
     /// The anchor is above its middle, and it runs upwards.
@@ -72,7 +70,6 @@ impl<B: DrawingBackend> Canvas<B> {
             Place::RightOf => (HPos::Left, VPos::Center),
             Place::LeftOf => (HPos::Right, VPos::Center),
             Place::Below | Place::Upwards => (HPos::Center, VPos::Top),
-            Place::Above => (HPos::Center, VPos::Bottom),
             Place::Centred => (HPos::Center, VPos::Center),
         };
         let size = size * f64::from(FINENESS);
@@ -198,12 +195,7 @@ fn clipped(points: &[Option<Point>], frame: Frame) -> Vec<Vec<Point>> {
 /// the parameter t of a + t (b - a) (Liang and Barsky, ACM Trans. Graph. 3, 1, 1984).
 fn inside(a: Point, b: Point, frame: Frame) -> Option<(Point, Point)> {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-    let edges = [
-        (-dx, a.0 - frame.left),
-        (dx, frame.right - a.0),
-        (-dy, a.1 - frame.top),
-        (dy, frame.bottom - a.1),
-    ];
+    let edges = [(-dx, a.0 - frame.left), (dx, frame.right - a.0), (-dy, a.1 - frame.top), (dy, frame.bottom - a.1)];
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
     for (out, room) in edges {
         if out == 0.0 {

@@ -102,8 +102,10 @@ pub(super) fn against_altitude(data: Data<'_>, settings: &Settings) -> Result<Pl
         columns.push((column, values));
     }
     columns.push(("extinction_per_m", extinction));
+    // Six decades below the power of ten above the largest value.
+    let top = 10_f64.powf(curves.iter().flat_map(|c| &c.points).map(|p| p.0).fold(1e-9, f64::max).log10().ceil());
     let panel = Panel::new(
-        Axis::logarithmic("coefficient / m⁻¹", 1e-10, 1e-3, 1),
+        Axis::logarithmic("coefficient / m⁻¹", top * 1e-6, top, 1),
         Axis::linear("altitude / km", 0.0, 80.0, 10.0),
         curves,
     );
@@ -123,11 +125,11 @@ pub(super) fn optical_depth(data: Data<'_>, settings: &Settings) -> Result<Plot,
     let transmittance: Vec<f64> = total.iter().map(|depth| (-depth).exp()).collect();
     let panel = Panel::new(
         wavelength_axis(),
-        Axis::logarithmic("vertical optical depth", 1e-4, 1e1, 1),
+        Axis::logarithmic("vertical optical depth", 1e-5, 1e1, 1),
         vec![
             Curve::new("scattering by molecules", BLUE, points(&nm, &molecules)),
             Curve::new("absorption by ozone", VERMILION, points(&nm, &ozone)),
-            Curve::new("both", BLACK, points(&nm, &total)).stroke(Stroke::Dashed),
+            Curve::new("total", BLACK, points(&nm, &total)).stroke(Stroke::Dashed),
         ],
     );
     let below = Panel::new(

@@ -66,7 +66,7 @@ pub fn month(month: u8) -> Colour {
 pub fn on(colour: Colour) -> Colour {
     let (r, g, b) = colour;
     let luma = 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b);
-    if luma > 128.0 { BLACK } else { WHITE }
+    if luma > 112.0 { BLACK } else { WHITE }
 }
 
 fn mixed(a: Colour, b: Colour, fraction: f64) -> Colour {

@@ -23,6 +23,8 @@ const ABOVE: f64 = 26.0;
 const LINE: f64 = 36.0;
 /// Room for the bar of a heat map: distance, width, and its numbers and label.
 const BAR: (f64, f64, f64) = (30.0, 30.0, 110.0);
+/// How far a cell reaches under the next one above and to the right, so that no seam shows.
+const OVERLAP: f64 = 0.5;
 /// Keys: height of a line, length of the sample, distance to the name and around.
 const KEY_LINE: f64 = 30.0;
 const SAMPLE: f64 = 46.0;
@@ -83,20 +85,8 @@ fn draw_panel<B: DrawingBackend>(canvas: &mut Canvas<B>, panel: &Panel, room: Fr
         canvas.curve(&points, frame, curve.colour, curve.stroke)?;
     }
     canvas.rectangle(frame, BLACK, false)?;
-    canvas.text(
-        &panel.x.label,
-        (0.5 * (frame.left + frame.right), frame.bottom + 44.0),
-        LABEL,
-        BLACK,
-        Place::Below,
-    )?;
-    canvas.text(
-        &panel.y.label,
-        (room.left + 14.0, 0.5 * (frame.top + frame.bottom)),
-        LABEL,
-        BLACK,
-        Place::Upwards,
-    )?;
+    canvas.text(&panel.x.label, (0.5 * (frame.left + frame.right), frame.bottom + 44.0), LABEL, BLACK, Place::Below)?;
+    canvas.text(&panel.y.label, (room.left + 14.0, 0.5 * (frame.top + frame.bottom)), LABEL, BLACK, Place::Upwards)?;
     draw_key(canvas, panel, frame, key_width)
 }
 
@@ -137,7 +127,8 @@ fn draw_cells<B: DrawingBackend>(
             continue;
         };
         let colour = colours::viridis(shade);
-        canvas.rectangle(Frame { left: a.0, top: a.1, right: b.0, bottom: b.1 }, colour, true)?;
+        let cell = Frame { left: a.0, top: a.1 - OVERLAP, right: b.0 + OVERLAP, bottom: b.1 };
+        canvas.rectangle(cell, colour, true)?;
         let middle = (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
         canvas.text(&format!("{value:.0}"), middle, 0.85 * NUMBER, colours::on(colour), Place::Centred)?;
     }
@@ -148,7 +139,7 @@ fn draw_cells<B: DrawingBackend>(
     for i in 0..steps {
         let at = |i: u32| frame.bottom - f64::from(i) / f64::from(steps) * frame.height();
         let colour = colours::viridis((f64::from(i) + 0.5) / f64::from(steps));
-        canvas.rectangle(Frame { top: at(i + 1), bottom: at(i), ..bar }, colour, true)?;
+        canvas.rectangle(Frame { top: at(i + 1) - OVERLAP, bottom: at(i), ..bar }, colour, true)?;
     }
     canvas.rectangle(bar, BLACK, false)?;
     for tick in ticks(&cells.scale) {
@@ -248,7 +239,8 @@ fn ticks(axis: &Axis) -> Vec<Tick> {
             })
             .collect();
     }
-    let (first, last) = ((low / axis.step).ceil() as i32, (high / axis.step).floor() as i32);
+    // Room for the rounding of the ends here too.
+    let (first, last) = ((low / axis.step - 1e-9).ceil() as i32, (high / axis.step + 1e-9).floor() as i32);
     let decimals = (-axis.step.log10()).ceil().max(0.0) as usize;
     // A step such as 0.25 needs a digit more than its size tells.
     let decimals = decimals + usize::from((axis.step * 10_f64.powi(decimals as i32)).fract() > 1e-9);
@@ -269,7 +261,9 @@ fn power_of_ten(exponent: i32) -> String {
         '3' => '³',
         _ => c.to_digit(10).and_then(|d| char::from_u32(0x2070 + d)).unwrap_or(c),
     };
-    std::iter::once("10".to_owned()).chain(std::iter::once(exponent.to_string().chars().map(raised).collect())).collect()
+    std::iter::once("10".to_owned())
+        .chain(std::iter::once(exponent.to_string().chars().map(raised).collect()))
+        .collect()
 }
 
 #[cfg(test)]
@@ -284,6 +278,7 @@ mod tests {
     fn ticks_have_the_digits_that_they_need() {
         assert_eq!(texts(&Axis::linear("", -0.5, 0.5, 0.25)), ["−0.50", "−0.25", "0.00", "0.25", "0.50"]);
         assert_eq!(texts(&Axis::linear("", 0.0, 120.0, 40.0)), ["0", "40", "80", "120"]);
+        assert_eq!(texts(&Axis::linear("", 0.0, 2.4, 0.8)), ["0.0", "0.8", "1.6", "2.4"]);
         assert_eq!(texts(&Axis::logarithmic("", 1e-2, 2e1, 1)), ["10⁻²", "10⁻¹", "10⁰", "10¹"]);
         assert_eq!(texts(&Axis::logarithmic("", 1e16, 1e26, 4)), ["10¹⁶", "10²⁰", "10²⁴"]);
     }

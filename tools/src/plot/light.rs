@@ -43,10 +43,8 @@ pub(super) fn sun(data: Data<'_>) -> Result<Plot, PlotError> {
         limb,
     )
     .key(Key::BottomLeft);
-    let mut columns = vec![
-        ("wavelength_nm".to_owned(), nm.clone()),
-        ("irradiance_w_m2_nm".to_owned(), irradiance.to_vec()),
-    ];
+    let mut columns =
+        vec![("wavelength_nm".to_owned(), nm.clone()), ("irradiance_w_m2_nm".to_owned(), irradiance.to_vec())];
     for tenth in TENTHS {
         let mu = f64::from(tenth) / 10.0;
         let values = nm.iter().map(|&w| relative(w, mu)).collect::<Result<_, _>>()?;

@@ -163,7 +163,8 @@ impl Curve {
 pub struct Cells {
     /// What the bar shows: quantity, unit, range and ticks.
     pub scale: Axis,
-    /// Rectangles (left, bottom, right, top) in the units of the axes, with their values.
+    /// Rectangles (left, bottom, right, top) in the units of the axes, with their values, from the
+    /// bottom left upwards.
     pub values: Vec<((f64, f64, f64, f64), f64)>,
 }
 

@@ -15,6 +15,7 @@ pub mod ground_albedo;
 pub mod ozone_arosa;
 pub mod ozone_mcpeters_labow;
 pub mod ozone_serdyuchenko;
+pub mod ozone_thesis;
 pub mod sun;
 pub mod us_standard_atmosphere;
 

@@ -1,0 +1,411 @@
+//! Aerosol: what there is in each biome, how much of it where, and how it scatters and absorbs.
+
+use super::{WAVELENGTH, bounded, scalar};
+use crate::{Axis, Curve, Field, Interpolation, Kind, Outside, Scale, Table, TableError};
+use std::fmt;
+
+/// The axis of the cosine of the scattering angle, from -1 (backward) to 1 (forward).
+pub const COSINE: (&str, &str) = ("cosine", "1");
+
+/// Wavelength in nm at which an amount of aerosol is stated.
+pub const REFERENCE_WAVELENGTH_NM: f64 = 550.0;
+
+/// The kinds of place that have an aerosol of their own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs, reason = "the names say it; docs/aerosols.md has what each is made of")]
+pub enum Biome {
+    Background,
+    DesertDust,
+    MaritimeClean,
+    MaritimeMineral,
+    PolarAntarctic,
+    PolarArctic,
+    RemoteContinental,
+    Rural,
+    Urban,
+}
+
+impl Biome {
+    /// Every biome, in the order of their names.
+    pub const ALL: [Self; 9] = [
+        Self::Background,
+        Self::DesertDust,
+        Self::MaritimeClean,
+        Self::MaritimeMineral,
+        Self::PolarAntarctic,
+        Self::PolarArctic,
+        Self::RemoteContinental,
+        Self::Rural,
+        Self::Urban,
+    ];
+
+    /// Its name in flags and files, such as `desert-dust`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Background => "background",
+            Self::DesertDust => "desert-dust",
+            Self::MaritimeClean => "maritime-clean",
+            Self::MaritimeMineral => "maritime-mineral",
+            Self::PolarAntarctic => "polar-antarctic",
+            Self::PolarArctic => "polar-arctic",
+            Self::RemoteContinental => "remote-continental",
+            Self::Rural => "rural",
+            Self::Urban => "urban",
+        }
+    }
+
+    /// The biome of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|biome| biome.name() == name)
+    }
+}
+
+impl fmt::Display for Biome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Whose size distributions and mixtures an aerosol has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum AerosolSource {
+    /// Hess, Koepke and Schult 1998: the type nearest to the biome, with humidity; plausible by day.
+    Opac,
+    /// Jaenicke 1993, as in the thesis, dry; hazy.
+    Jaenicke,
+}
+
+impl AerosolSource {
+    /// Both, the default first.
+    pub const ALL: [Self; 2] = [Self::Opac, Self::Jaenicke];
+
+    /// Its name in flags and files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Opac => "opac",
+            Self::Jaenicke => "jaenicke",
+        }
+    }
+
+    /// The source of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|source| source.name() == name)
+    }
+}
+
+impl fmt::Display for AerosolSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Optics of a species at one humidity and wavelength, per particle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Optics {
+    /// Extinction cross-section in m^2.
+    pub extinction_m2: f64,
+    /// Scattering cross-section in m^2, at most the extinction.
+    pub scattering_m2: f64,
+    /// Asymmetry parameter g, the mean cosine of the scattering angle, from the Mie series.
+    pub asymmetry: f64,
+    /// Phase function in sr^-1 at each of [`Species::cosines`]; taken as linear in the cosine between them, its
+    /// integral over the sphere is 1.
+    pub phase: Vec<f64>,
+}
+
+/// One species: particles that have their sizes and materials in fixed shares, so that one profile
+/// and one set of spectra describe them.
+#[derive(Debug, Clone)]
+pub struct Species {
+    /// Name, such as `boundary_layer`.
+    pub name: String,
+    /// Number density N(z) in m^-3 against altitude in m; zero beyond its axis, up to any altitude.
+    pub number_density_m3: Curve,
+    /// Relative humidity in percent at which it is by default.
+    pub default_humidity_percent: f64,
+    wavelength: Axis,
+    humidity: Axis,
+    cosine: Axis,
+    extinction: Field,
+    scattering: Field,
+    asymmetry: Field,
+    phase: Field,
+}
+
+/// The aerosol of a biome after a source.
+#[derive(Debug, Clone)]
+pub struct Aerosol {
+    /// The biome.
+    pub biome: Biome,
+    /// The source.
+    pub source: AerosolSource,
+    /// The species, lowest first.
+    pub species: Vec<Species>,
+}
+
+/// What the names of the axes and fields of a species end in, after its own name.
+pub mod suffix {
+    /// Axis of altitudes, m.
+    pub const ALTITUDE: &str = "_altitude";
+    /// Axis of relative humidities, percent.
+    pub const HUMIDITY: &str = "_humidity";
+    /// Field over altitude, m^-3.
+    pub const NUMBER_DENSITY: &str = "_number_density";
+    /// Field without axes, percent.
+    pub const DEFAULT_HUMIDITY: &str = "_default_humidity";
+    /// Field over humidity and wavelength, m^2.
+    pub const EXTINCTION: &str = "_extinction";
+    /// Field over humidity and wavelength, m^2.
+    pub const SCATTERING: &str = "_scattering";
+    /// Field over humidity and wavelength, 1.
+    pub const ASYMMETRY: &str = "_asymmetry";
+    /// Field over humidity, wavelength and cosine, sr^-1.
+    pub const PHASE: &str = "_phase";
+}
+
+impl Aerosol {
+    /// Name of the file of a biome and source in `data/`.
+    #[must_use]
+    pub fn file_name(source: AerosolSource, biome: Biome) -> String {
+        format!("{}-{source}-{biome}.table", Kind::Aerosol)
+    }
+
+    /// Settings `biome` and `source`; axes `wavelength` (nm) and `cosine` (1, from -1 to 1); for each species S the
+    /// axes `S_altitude` (m), `S_humidity` (percent) and the fields `S_number_density` (m^-3) over altitude,
+    /// `S_default_humidity` (percent) without axes, `S_extinction`, `S_scattering` (m^2) and `S_asymmetry` (1)
+    /// over humidity and wavelength, `S_phase` (sr^-1) over humidity, wavelength and cosine. Further fields
+    /// (errors) are allowed.
+    ///
+    /// # Errors
+    /// [`TableError`] if the table is of another kind, lacks a field, or holds impossible values: a negative
+    /// density or cross-section, more scattering than extinction, or a phase function that is
+    /// negative or whose integral is off 1 by more than 1e-5.
+    pub fn from_table(table: &Table) -> Result<Self, TableError> {
+        table.expect_kind(Kind::Aerosol)?;
+        let setting = |key: &'static str| {
+            let missing = || TableError::Missing { what: "setting", name: key.into(), kind: table.kind.to_string() };
+            table.settings.get(key).map(String::as_str).ok_or_else(missing)
+        };
+        let unknown = |key: &str, name: &str| TableError::Inconsistent(format!("no {key} is called {name:?}"));
+        let (biome, source) = (setting("biome")?, setting("source")?);
+        let names = table.fields.iter().filter_map(|field| field.name.strip_suffix(suffix::NUMBER_DENSITY));
+        let species = names.map(|name| Species::from_table(table, name)).collect::<Result<Vec<_>, _>>()?;
+        if species.is_empty() {
+            return Err(TableError::Inconsistent("no species".into()));
+        }
+        Ok(Self {
+            biome: Biome::from_name(biome).ok_or_else(|| unknown("biome", biome))?,
+            source: AerosolSource::from_name(source).ok_or_else(|| unknown("source", source))?,
+            species,
+        })
+    }
+
+    /// Vertical optical depth at a wavelength in nm. `humidity_percent` replaces the default humidity of those
+    /// species that take it (see [`Species::humidity`]).
+    ///
+    /// # Errors
+    /// [`TableError::OutOfRange`] outside the table's wavelengths or humidities.
+    pub fn optical_depth(&self, humidity_percent: Option<f64>, wavelength_nm: f64) -> Result<f64, TableError> {
+        let one = |s: &Species| -> Result<f64, TableError> {
+            Ok(s.column_m2() * s.cross_sections(s.humidity(humidity_percent), wavelength_nm)?.0)
+        };
+        self.species.iter().map(one).sum()
+    }
+
+    /// The type's own amount: its optical depth at 550 nm at the default humidities.
+    ///
+    /// # Errors
+    /// [`TableError::OutOfRange`] if the table does not reach 550 nm.
+    pub fn own_optical_depth(&self) -> Result<f64, TableError> {
+        self.optical_depth(None, REFERENCE_WAVELENGTH_NM)
+    }
+
+    /// Extinction coefficient in m^-1 at altitude 0, for a visibility. Arguments as for [`Aerosol::optical_depth`].
+    ///
+    /// # Errors
+    /// As [`Aerosol::optical_depth`].
+    pub fn ground_extinction(&self, humidity_percent: Option<f64>, wavelength_nm: f64) -> Result<f64, TableError> {
+        let one = |s: &Species| -> Result<f64, TableError> {
+            let (extinction, _) = s.cross_sections(s.humidity(humidity_percent), wavelength_nm)?;
+            Ok(s.number_density_m3.at(0.0)? * extinction)
+        };
+        self.species.iter().map(one).sum()
+    }
+}
+
+impl Species {
+    fn from_table(table: &Table, name: &str) -> Result<Self, TableError> {
+        let full = |end: &str| format!("{name}{end}");
+        let (altitude, humidity) = (full(suffix::ALTITUDE), full(suffix::HUMIDITY));
+        let spectral = |end: &str, unit: &str| -> Result<Field, TableError> {
+            table.field(&full(end), unit, &[&humidity, WAVELENGTH.0]).cloned()
+        };
+        let density = table.curve(&full(suffix::NUMBER_DENSITY), "m^-3", (&altitude, "m"))?;
+        if density.axis().outside != Outside::Zero {
+            return Err(TableError::Inconsistent(format!("axis {altitude:?} must be zero outside")));
+        }
+        let axis = |name: &str, unit: &str| -> Result<Axis, TableError> {
+            let axis = table.axis(name)?;
+            if axis.unit == unit && axis.outside == Outside::Error && axis.interpolation == Interpolation::Linear {
+                return Ok(axis.clone());
+            }
+            Err(TableError::Inconsistent(format!("axis {name:?} must be in {unit:?}, linear, and refuse outside")))
+        };
+        let species = Self {
+            name: name.into(),
+            number_density_m3: bounded(density, name, 0.0, 1e13)?,
+            default_humidity_percent: scalar(table, &full(suffix::DEFAULT_HUMIDITY), "percent")?,
+            wavelength: axis(WAVELENGTH.0, WAVELENGTH.1)?,
+            humidity: axis(&humidity, "percent")?,
+            cosine: axis(COSINE.0, COSINE.1)?,
+            extinction: spectral(suffix::EXTINCTION, "m^2")?,
+            scattering: spectral(suffix::SCATTERING, "m^2")?,
+            asymmetry: spectral(suffix::ASYMMETRY, "1")?,
+            phase: table.field(&full(suffix::PHASE), "sr^-1", &[&humidity, WAVELENGTH.0, COSINE.0])?.clone(),
+        };
+        species.validate()?;
+        Ok(species)
+    }
+
+    fn validate(&self) -> Result<(), TableError> {
+        let fail = |text: &str| Err(TableError::Inconsistent(format!("species {:?}: {text}", self.name)));
+        if self.cosine.range() != (-1.0, 1.0) {
+            return fail("cosines must reach from -1 to 1");
+        }
+        if self.humidity.locate(self.default_humidity_percent).is_err() {
+            return fail("the default humidity is not on its axis");
+        }
+        for (extinction, scattering) in self.extinction.values.iter().zip(&self.scattering.values) {
+            // Rounding to single precision.
+            if !(*scattering > 0.0 && *scattering <= extinction * (1.0 + 2e-7)) {
+                return fail("scattering must be positive and at most the extinction");
+            }
+        }
+        if self.asymmetry.values.iter().any(|g| !(-1.0..=1.0).contains(g)) {
+            return fail("an asymmetry is outside -1 to 1");
+        }
+        for phase in self.phase.values.chunks(self.cosine.nodes.len()) {
+            if phase.iter().any(|p| *p < 0.0) || (integral(&self.cosine.nodes, phase) - 1.0).abs() > 1e-5 {
+                return fail("a phase function is negative or its integral is not 1");
+            }
+        }
+        Ok(())
+    }
+
+    /// Cosines of the angles of the phase function, from -1 (backward) to 1 (forward).
+    #[must_use]
+    pub fn cosines(&self) -> &[f64] {
+        &self.cosine.nodes
+    }
+
+    /// Lowest and highest relative humidity in percent; equal if the species does not take up water here.
+    #[must_use]
+    pub fn humidity_range_percent(&self) -> (f64, f64) {
+        self.humidity.range()
+    }
+
+    /// The relative humidity in percent that holds for it if `asked` is asked for: that, where the species has
+    /// more than one humidity, else (and for none) its default.
+    #[must_use]
+    pub fn humidity(&self, asked: Option<f64>) -> f64 {
+        asked.filter(|_| self.humidity.nodes.len() > 1).unwrap_or(self.default_humidity_percent)
+    }
+
+    /// Vertical column of particles in m^-2: the integral of the number density, exact for its interpolation.
+    #[must_use]
+    pub fn column_m2(&self) -> f64 {
+        let curve = &self.number_density_m3;
+        let ends = curve.axis().nodes.windows(2).zip(curve.values().windows(2));
+        ends.map(|(z, n)| {
+            let mean = match (curve.axis().interpolation, curve.scale()) {
+                (Interpolation::Linear, Scale::Linear) => 0.5 * (n[0] + n[1]),
+                (Interpolation::Linear, Scale::Logarithmic) => {
+                    let rise = (n[1] / n[0]).ln();
+                    if rise == 0.0 { n[0] } else { n[0] * rise.exp_m1() / rise }
+                }
+                (Interpolation::Step | Interpolation::Node, _) => n[0],
+            };
+            (z[1] - z[0]) * mean
+        })
+        .sum()
+    }
+
+    /// Extinction and scattering cross-section per particle in m^2, their logarithms linear in humidity (percent)
+    /// and wavelength (nm).
+    ///
+    /// # Errors
+    /// [`TableError::OutOfRange`] outside either axis.
+    pub fn cross_sections(&self, humidity_percent: f64, wavelength_nm: f64) -> Result<(f64, f64), TableError> {
+        let corners = self.corners(humidity_percent, wavelength_nm)?;
+        let extinction = corners.mix(&self.extinction);
+        Ok((extinction, corners.mix(&self.scattering).min(extinction)))
+    }
+
+    /// Optics at a relative humidity (percent) and wavelength (nm): cross-sections as
+    /// [`Species::cross_sections`]; asymmetry and phase function linear in both.
+    ///
+    /// # Errors
+    /// [`TableError::OutOfRange`] outside either axis.
+    pub fn optics(&self, humidity_percent: f64, wavelength_nm: f64) -> Result<Optics, TableError> {
+        let (extinction_m2, scattering_m2) = self.cross_sections(humidity_percent, wavelength_nm)?;
+        let corners = self.corners(humidity_percent, wavelength_nm)?;
+        let angles = self.cosine.nodes.len();
+        let mut phase = vec![0.0; angles];
+        for (row, weight) in corners.rows.into_iter().zip(corners.weights()).filter(|(_, weight)| *weight > 0.0) {
+            for (sum, value) in phase.iter_mut().zip(&self.phase.values[row * angles..(row + 1) * angles]) {
+                *sum += weight * value;
+            }
+        }
+        Ok(Optics { extinction_m2, scattering_m2, asymmetry: corners.mix(&self.asymmetry), phase })
+    }
+
+    fn corners(&self, humidity_percent: f64, wavelength_nm: f64) -> Result<Corners, TableError> {
+        let nowhere = || TableError::Inconsistent("humidity and wavelength axes must refuse outside".into());
+        let h = self.humidity.locate(humidity_percent)?.ok_or_else(nowhere)?;
+        let w = self.wavelength.locate(wavelength_nm)?.ok_or_else(nowhere)?;
+        let row = |h: usize, w: usize| h * self.wavelength.nodes.len() + w;
+        let (h1, w1) = (h.index + usize::from(h.fraction > 0.0), w.index + usize::from(w.fraction > 0.0));
+        Ok(Corners {
+            rows: [row(h.index, w.index), row(h.index, w1), row(h1, w.index), row(h1, w1)],
+            humidity: h.fraction,
+            wavelength: w.fraction,
+        })
+    }
+}
+
+/// The four nodes around a humidity and wavelength.
+struct Corners {
+    rows: [usize; 4],
+    humidity: f64,
+    wavelength: f64,
+}
+
+impl Corners {
+    fn weights(&self) -> [f64; 4] {
+        let (h, w) = (self.humidity, self.wavelength);
+        [(1.0 - h) * (1.0 - w), (1.0 - h) * w, h * (1.0 - w), h * w]
+    }
+
+    fn mix(&self, field: &Field) -> f64 {
+        let [a, b, c, d] = self.rows.map(|row| field.values[row]);
+        let along = |a, b| if a == b { a } else { field.scale.between(a, b, self.wavelength) };
+        let (low, high) = (along(a, b), along(c, d));
+        if low == high { low } else { field.scale.between(low, high, self.humidity) }
+    }
+}
+
+/// Integral over the sphere of a function linear between cosines: 2 pi times the trapezoidal sum. The rule by
+/// which phase functions are normalised.
+#[must_use]
+pub fn integral(cosines: &[f64], values: &[f64]) -> f64 {
+    let cells = cosines.windows(2).zip(values.windows(2));
+    std::f64::consts::PI * cells.map(|(c, v)| (c[1] - c[0]) * (v[0] + v[1])).sum::<f64>()
+}
+
+#[cfg(test)]
+#[path = "aerosol_tests.rs"]
+mod tests;

@@ -1,0 +1,86 @@
+//! External mixtures: each particle of one material, shares by number.
+
+use super::AerosolError;
+use super::angles::normalise;
+use super::bulk::{Bulk, QuadratureError};
+use super::library::Library;
+use super::recipe::SpeciesRecipe;
+use crate::raw::aerosol_opac::AerosolOpac;
+
+/// Optics of a mixture at one wavelength, per particle of the whole.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mixed {
+    /// Extinction cross-section, m^2.
+    pub extinction: f64,
+    /// Scattering cross-section, m^2.
+    pub scattering: f64,
+    /// Absorption cross-section, m^2.
+    pub absorption: f64,
+    /// Asymmetry parameter, 1.
+    pub asymmetry: f64,
+    /// Phase function, sr^-1, normalised by the rule of [`super::angles`]; empty where no angles were asked for.
+    pub phase: Vec<f64>,
+    /// The integral of the phase function over the sphere before it was normalised, less 1.
+    pub correction: f64,
+    /// Bound on the error of the average over sizes.
+    pub error: QuadratureError,
+}
+
+impl Mixed {
+    /// Single-scattering albedo, 1.
+    #[must_use]
+    pub fn albedo(&self) -> f64 {
+        self.scattering / self.extinction
+    }
+}
+
+/// Mixes particles by their numbers: C = sum n_i C_i / N, g and the phase function weighted by n_i C_sca,i, N the
+/// sum of the n_i. `parts` must not be empty.
+#[must_use]
+pub fn mix(parts: &[(&Bulk, f64)], cosines: &[f64]) -> Mixed {
+    let number: f64 = parts.iter().map(|(_, n)| n).sum();
+    let mean = |value: &dyn Fn(&Bulk) -> f64| parts.iter().map(|(bulk, n)| n * value(bulk)).sum::<f64>() / number;
+    let extinction = mean(&|b| b.extinction);
+    let scattering = mean(&|b| b.scattering);
+    let mut phase = vec![0.0; cosines.len()];
+    let mut changes = vec![0.0; cosines.len()];
+    for (bulk, n) in parts {
+        let weight = n / (number * scattering);
+        for ((sum, change), value) in phase.iter_mut().zip(&mut changes).zip(&bulk.differential) {
+            *sum += weight * value;
+            *change += weight * value * bulk.error.phase;
+        }
+    }
+    let error = QuadratureError {
+        cross_sections: mean(&|b| b.extinction * b.error.cross_sections) / extinction,
+        phase: changes.iter().zip(&phase).map(|(change, p)| change / p).fold(0.0, f64::max),
+    };
+    let correction = if cosines.is_empty() { 0.0 } else { normalise(cosines, &mut phase) };
+    Mixed {
+        extinction,
+        scattering,
+        absorption: mean(&|b| b.absorption),
+        asymmetry: mean(&|b| b.scattering * b.asymmetry) / scattering,
+        phase,
+        correction,
+        error,
+    }
+}
+
+/// Optics of a species at a relative humidity of its list, one for each wavelength of the library.
+///
+/// # Errors
+/// [`AerosolError::Missing`] if the library lacks one of its particles.
+pub fn species(
+    opac: &AerosolOpac,
+    library: &Library,
+    recipe: &SpeciesRecipe,
+    humidity_percent: f64,
+) -> Result<Vec<Mixed>, AerosolError> {
+    let mut parts = Vec::with_capacity(recipe.parts.len());
+    for (part, number) in &recipe.parts {
+        parts.push((library.get(&part.particles(opac, humidity_percent)?)?, *number));
+    }
+    let at = |w: usize| -> Vec<(&Bulk, f64)> { parts.iter().map(|(bulk, number)| (&bulk[w], *number)).collect() };
+    Ok((0..library.wavelengths_nm().len()).map(|w| mix(&at(w), library.cosines())).collect())
+}

@@ -1,0 +1,246 @@
+//! Tables of aerosol: one for each source and biome.
+
+use super::{field, two_digits};
+use crate::aerosol::angles::{cosines, degrees};
+use crate::aerosol::bulk::Rule;
+use crate::aerosol::library::Library;
+use crate::aerosol::mixture::{Mixed, species};
+use crate::aerosol::recipe::{Inputs, Particles, Recipe, SpeciesRecipe, recipe};
+use crate::aerosol::AerosolError;
+use crate::raw::RawData;
+use tables::units::WAVELENGTH_RANGE_NM;
+use tables::views::{AerosolSource, Biome, COSINE, WAVELENGTH, suffix};
+use tables::{Axis, Field, Kind, Precision, Scale, Table, TableError, Tolerance};
+
+/// Step of the wavelength axis, nm: every other node is one of the refractive indices, which are linear between theirs.
+const WAVELENGTH_STEP: f64 = 25.0;
+
+/// How finely sizes are resolved in the tables.
+const RULE: Rule = Rule { first: 50, most: 800, cross_sections: 1e-4, phase: 3e-3 };
+
+/// Of the intervals between wavelengths, the interpolation is measured in every how many.
+const MEASURED: usize = 4;
+
+/// What all aerosol tables are made from.
+pub(super) struct Prepared {
+    recipes: Vec<Recipe>,
+    axis: Axis,
+    /// At the nodes of the axis, at all humidities.
+    nodes: Library,
+    /// Half-way between some of them, at the default humidities, to measure the interpolation.
+    halves: Library,
+}
+
+fn refused(error: AerosolError) -> TableError {
+    TableError::Inconsistent(error.to_string())
+}
+
+fn inputs(raw: &RawData) -> Inputs<'_> {
+    Inputs { opac: &raw.aerosol_opac, jaenicke: &raw.aerosol_jaenicke }
+}
+
+/// Every kind of particles that these recipes need at the humidities that `of` chooses.
+fn particles<'a>(
+    raw: &RawData,
+    recipes: &'a [Recipe],
+    of: impl Fn(&'a SpeciesRecipe) -> &'a [f64],
+) -> Result<Vec<Particles>, AerosolError> {
+    let mut all = Vec::new();
+    for species in recipes.iter().flat_map(|recipe| &recipe.species) {
+        for &humidity in of(species) {
+            for (part, _) in &species.parts {
+                all.push(part.particles(&raw.aerosol_opac, humidity)?);
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// Computes the optics of every kind of particles of every biome.
+pub(super) fn prepare(raw: &RawData) -> Result<Prepared, TableError> {
+    let (low, high) = WAVELENGTH_RANGE_NM;
+    let count = ((high - low) / WAVELENGTH_STEP) as usize + 1;
+    let axis = Axis::uniform(WAVELENGTH.0, WAVELENGTH.1, low, WAVELENGTH_STEP, count)?;
+    let between: Vec<f64> = axis.nodes.windows(2).step_by(MEASURED).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+    let angles = cosines(&degrees());
+    let compute = || -> Result<(Vec<Recipe>, Library, Library), AerosolError> {
+        let mut recipes = Vec::new();
+        for source in AerosolSource::ALL {
+            for biome in Biome::ALL {
+                recipes.push(recipe(inputs(raw), source, biome)?);
+            }
+        }
+        let all = particles(raw, &recipes, |s| &s.humidities)?;
+        let nodes = Library::new(&raw.aerosol_opac, all, &axis.nodes, &angles, &RULE)?;
+        let usual = particles(raw, &recipes, |s| std::slice::from_ref(&s.default_humidity))?;
+        let halves = Library::new(&raw.aerosol_opac, usual, &between, &angles, &RULE)?;
+        Ok((recipes, nodes, halves))
+    };
+    let (recipes, nodes, halves) = compute().map_err(refused)?;
+    Ok(Prepared { recipes, axis, nodes, halves })
+}
+
+/// The fields of one species, gathered.
+#[derive(Default)]
+struct Columns {
+    extinction: Vec<f64>,
+    scattering: Vec<f64>,
+    asymmetry: Vec<f64>,
+    phase: Vec<f64>,
+    cross_section_error: Vec<f64>,
+    phase_error: Vec<f64>,
+    largest_correction: f64,
+}
+
+/// Largest deviation, at the default humidity, of what is interpolated half-way between wavelengths from what is
+/// computed there: of cross-sections (relative), of g (absolute), and of the phase function (relative).
+#[derive(Default)]
+struct Halves {
+    cross_sections: f64,
+    asymmetry: f64,
+    phase: f64,
+}
+
+fn halves(nodes: &[Mixed], exact: &[Mixed]) -> Halves {
+    let mut worst = Halves::default();
+    for (pair, exact) in nodes.windows(2).step_by(MEASURED).zip(exact) {
+        let (a, b) = (&pair[0], &pair[1]);
+        let relative = |found: f64, exact: f64| (found / exact - 1.0).abs();
+        let extinction = relative((a.extinction * b.extinction).sqrt(), exact.extinction);
+        let scattering = relative((a.scattering * b.scattering).sqrt(), exact.scattering);
+        worst.cross_sections = worst.cross_sections.max(extinction).max(scattering);
+        worst.asymmetry = worst.asymmetry.max((0.5 * (a.asymmetry + b.asymmetry) - exact.asymmetry).abs());
+        for ((a, b), exact) in a.phase.iter().zip(&b.phase).zip(&exact.phase) {
+            worst.phase = worst.phase.max(relative(0.5 * (a + b), *exact));
+        }
+    }
+    worst
+}
+
+/// The table of a source and biome.
+pub(super) fn table(
+    raw: &RawData,
+    prepared: &Prepared,
+    source: AerosolSource,
+    biome: Biome,
+) -> Result<Table, TableError> {
+    let made = prepared.recipes.iter().find(|r| r.source == source && r.biome == biome);
+    let made = made.ok_or_else(|| TableError::Inconsistent(format!("no recipe of {source} for {biome}")))?;
+    let mut axes = vec![prepared.axis.clone(), Axis::new(COSINE.0, COSINE.1, prepared.nodes.cosines().to_vec())?];
+    let mut fields = Vec::new();
+    let (mut quadrature, mut angle_error, mut correction) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for recipe in &made.species {
+        let mut columns = Columns::default();
+        let mut between = Halves::default();
+        for &humidity in &recipe.humidities {
+            let mixed = species(&raw.aerosol_opac, &prepared.nodes, recipe, humidity).map_err(refused)?;
+            for one in &mixed {
+                columns.extinction.push(one.extinction);
+                columns.scattering.push(one.scattering);
+                columns.asymmetry.push(one.asymmetry);
+                columns.phase.extend(&one.phase);
+                columns.cross_section_error.push(one.error.cross_sections);
+                columns.phase_error.push(one.error.phase);
+                columns.largest_correction = columns.largest_correction.max(one.correction.abs());
+            }
+            if humidity == recipe.default_humidity {
+                let exact = species(&raw.aerosol_opac, &prepared.halves, recipe, humidity).map_err(refused)?;
+                between = halves(&mixed, &exact);
+            }
+        }
+        quadrature = columns.cross_section_error.iter().copied().fold(quadrature, f64::max);
+        angle_error = columns.phase_error.iter().copied().fold(angle_error, f64::max);
+        correction = correction.max(columns.largest_correction);
+        add_species(&mut axes, &mut fields, recipe, columns, &between)?;
+    }
+    let settings = [
+        ("biome", biome.to_string()),
+        ("source", source.to_string()),
+        ("composition", made.composition.clone()),
+        ("particles", "homogeneous spheres, mixed externally".to_owned()),
+        ("size average", format!("nested trapezoidal rules in ln r, {} to {} intervals", 2 * RULE.first, RULE.most)),
+        ("largest quadrature error of a cross-section", format!("{:e}", two_digits(quadrature))),
+        ("largest quadrature error of a phase function", format!("{:e}", two_digits(angle_error))),
+        ("largest correction of a phase function to integral 1", format!("{:e}", two_digits(correction))),
+        ("interpolation errors", format!("half-way between wavelengths, in every {MEASURED}th interval, at the default humidity")),
+    ];
+    let mut provenance = vec![
+        raw.aerosol_opac.refractive_index.provenance.clone(),
+        raw.aerosol_opac.components.provenance.clone(),
+        raw.aerosol_opac.types.provenance.clone(),
+        raw.aerosol_opac.layers.provenance.clone(),
+    ];
+    if source == AerosolSource::Jaenicke {
+        provenance.push(raw.aerosol_jaenicke.modes.provenance.clone());
+    }
+    Ok(Table {
+        kind: Kind::Aerosol,
+        title: format!("Aerosol of the biome {biome} after {source}"),
+        axes,
+        fields,
+        settings: settings.into_iter().map(|(key, value)| (key.to_owned(), value)).collect(),
+        provenance,
+    })
+}
+
+fn add_species(
+    axes: &mut Vec<Axis>,
+    fields: &mut Vec<Field>,
+    recipe: &SpeciesRecipe,
+    columns: Columns,
+    between: &Halves,
+) -> Result<(), TableError> {
+    let full = |end: &str| format!("{}{end}", recipe.name);
+    let (altitude, humidity) = (full(suffix::ALTITUDE), full(suffix::HUMIDITY));
+    let number: f64 = recipe.parts.iter().map(|(_, number)| number).sum();
+    let density = recipe.profile.curve(&altitude, number)?;
+    axes.push(density.axis().clone());
+    axes.push(Axis::new(&humidity, "percent", recipe.humidities.clone())?);
+    let spectral = [humidity.as_str(), WAVELENGTH.0];
+    fields.push(Field {
+        scale: density.scale(),
+        ..field(&full(suffix::NUMBER_DENSITY), "m^-3", &[&altitude], 0.0, density.values().to_vec())
+    });
+    fields.push(field(&full(suffix::DEFAULT_HUMIDITY), "percent", &[], 0.0, vec![recipe.default_humidity]));
+    let double = |end: &str, unit: &str, scale: Scale, error: f64, values: Vec<f64>| Field {
+        precision: Precision::F64,
+        scale,
+        tolerance: Tolerance { relative: 1e-9, absolute: 0.0 },
+        interpolation_error: Some(two_digits(error)),
+        ..field(&full(end), unit, &spectral, 0.0, values)
+    };
+    let log = Scale::Logarithmic;
+    fields.push(double(suffix::EXTINCTION, "m^2", log, between.cross_sections, columns.extinction));
+    fields.push(double(suffix::SCATTERING, "m^2", log, between.cross_sections, columns.scattering));
+    fields.push(double(suffix::ASYMMETRY, "1", Scale::Linear, between.asymmetry, columns.asymmetry));
+    let over = [humidity.as_str(), WAVELENGTH.0, COSINE.0];
+    fields.push(Field {
+        // Beside the rounding of storage, backward amplitudes of large spheres pass on a few last bits of sines.
+        tolerance: Tolerance { relative: 1e-6, absolute: 0.0 },
+        interpolation_error: Some(two_digits(between.phase)),
+        ..field(&full(suffix::PHASE), "sr^-1", &over, 1e-3, columns.phase)
+    });
+    for (end, values) in
+        [("_cross_section_quadrature_error", columns.cross_section_error), ("_phase_quadrature_error", columns.phase_error)]
+    {
+        fields.push(Field {
+            // Differences of nearly equal numbers: their last bits are the machine's.
+            tolerance: Tolerance { relative: 0.1, absolute: 1e-9 },
+            ..field(&full(end), "1", &spectral, 1.0, values)
+        });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wavelengths_meet_the_reference_wavelength_and_the_ends() {
+        let (low, high) = WAVELENGTH_RANGE_NM;
+        assert_eq!((high - low) % WAVELENGTH_STEP, 0.0);
+        assert_eq!((tables::views::REFERENCE_WAVELENGTH_NM - low) % WAVELENGTH_STEP, 0.0);
+        assert!(degrees().len() < 400, "the tables would grow beyond what data/ may hold");
+    }
+}

@@ -1,0 +1,132 @@
+//! Figures of the studies, from their numbers.
+
+use super::Name;
+use crate::frame::Frame;
+use crate::plot::colours::{BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION};
+use crate::plot::model::{Axis, Curve, Figure, Key, Panel, Stroke};
+use polars::prelude::PolarsError;
+use tables::units::KM;
+
+/// The figure of a study, from what [`super::make`] gave.
+///
+/// # Errors
+/// [`PolarsError`] if the numbers are of another study.
+pub fn figure(name: Name, frame: &Frame) -> Result<Figure, PolarsError> {
+    match name {
+        Name::Rayleigh => rayleigh(frame),
+        Name::Interpolation => interpolation(frame),
+        Name::Thesis => thesis(frame),
+    }
+}
+
+/// Points of two columns, each in units of the factor given.
+fn points(frame: &Frame, (x, x_unit): (&str, f64), (y, y_unit): (&str, f64)) -> Result<Vec<(f64, f64)>, PolarsError> {
+    let (x, y) = (frame.column(x)?, frame.column(y)?);
+    Ok(x.into_iter().zip(y).map(|(x, y)| (x / x_unit, y / y_unit)).collect())
+}
+
+/// The points of a function that holds its value from one ordinate to the next, corners included.
+fn steps(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let corners = points.windows(2).flat_map(|pair| [pair[0], (pair[0].0, pair[1].1)]);
+    corners.chain(points.last().copied()).collect()
+}
+
+fn rayleigh(frame: &Frame) -> Result<Figure, PolarsError> {
+    let nm = ("wavelength_nm", 1.0);
+    let axis = || Axis::linear("wavelength / nm", 200.0, 1000.0, 100.0);
+    // Table 2 does not have every wavelength, and gaps would break its line.
+    let printed = |column: (&str, f64)| -> Result<Vec<(f64, f64)>, PolarsError> {
+        Ok(points(frame, nm, column)?.into_iter().filter(|(_, y)| y.is_finite()).collect())
+    };
+    let values = Panel::new(
+        axis(),
+        Axis::logarithmic("cross-section / m²", 1e-32, 1e-28, 1),
+        vec![
+            Curve::new("formula", BLUE, points(frame, nm, ("formula_m2", 1.0))?),
+            Curve::new("table 2", BLACK, printed(("table_2_m2", 1.0))?).stroke(Stroke::Marks),
+        ],
+    );
+    let percent = 0.01;
+    let differences = Panel::new(
+        axis(),
+        Axis::linear("difference from the formula / %", -0.5, 0.5, 0.1),
+        vec![
+            Curve::new("fit (table 3)", VERMILION, points(frame, nm, ("fit_relative", percent))?),
+            Curve::new("King factor of Bates", GREEN, points(frame, nm, ("bates_relative", percent))?)
+                .stroke(Stroke::Dashed),
+            Curve::new("table 2", BLACK, printed(("table_2_relative", percent))?).stroke(Stroke::Marks),
+        ],
+    );
+    let title = "Rayleigh scattering by a molecule of air: Bucholtz' formula, table and fit".into();
+    Ok(Figure { title, rows: vec![vec![values, differences.share(1.2)]] })
+}
+
+fn interpolation(frame: &Frame) -> Result<Figure, PolarsError> {
+    let error = || Axis::logarithmic("relative error", 1e-9, 1e-1, 2);
+    let altitude = |top: f64| Axis::linear("altitude / km", 0.0, top, 20.0);
+    let up = |name: &str, column: &str, abscissa: &str, colour| -> Result<Curve, PolarsError> {
+        Ok(Curve::new(name, colour, points(frame, (column, 1.0), (abscissa, KM))?))
+    };
+    let air = Panel::new(
+        error(),
+        altitude(120.0),
+        vec![
+            up("number density", "number_density_relative", "altitude_m", BLUE)?,
+            up("pressure", "pressure_relative", "altitude_m", VERMILION)?,
+            up("temperature", "temperature_relative", "altitude_m", GREEN)?,
+        ],
+    )
+    .titled("air");
+    let ozone = Panel::new(error(), altitude(120.0), vec![up("", "ozone_relative", "ozone_altitude_m", BLUE)?])
+        .titled("ozone, June, 45° N")
+        .key(Key::None);
+    let spectrum = points(frame, ("wavelength_nm", 1.0), ("rayleigh_relative", 1.0))?;
+    let rayleigh = Panel::new(
+        Axis::linear("wavelength / nm", 300.0, 1000.0, 200.0),
+        error(),
+        vec![Curve::new("", BLUE, spectrum)],
+    )
+    .titled("Rayleigh cross-section")
+    .key(Key::None);
+    let title = "Error of interpolation half-way between the nodes of the tables".into();
+    Ok(Figure { title, rows: vec![vec![air.share(1.2), ozone, rayleigh]] })
+}
+
+fn thesis(frame: &Frame) -> Result<Figure, PolarsError> {
+    let height = ("altitude_m", KM);
+    let density = |name: &str, column: &str, colour| -> Result<Curve, PolarsError> {
+        Ok(Curve::new(name, colour, points(frame, (column, 1e18), height)?))
+    };
+    let layers = |name: &str, column: &str, colour| -> Result<Curve, PolarsError> {
+        let curve = density(name, column, colour)?;
+        Ok(Curve { points: steps(&curve.points), ..curve })
+    };
+    let profiles = Panel::new(
+        Axis::logarithmic("ozone, April / 10¹⁸ m⁻³", 1e-2, 1e3, 1),
+        Axis::linear("altitude / km", 0.0, 70.0, 10.0),
+        vec![
+            density("climatology, 45° N", "ozone_climatology_m3", BLUE)?,
+            layers("Arosa, six layers", "ozone_layers_m3", ORANGE)?,
+            layers("thesis", "ozone_thesis_m3", GREY)?.stroke(Stroke::Dotted),
+        ],
+    );
+    let nm = ("wavelength_nm", 1.0);
+    let sections = Panel::new(
+        Axis::linear("wavelength / nm", 300.0, 1000.0, 100.0),
+        Axis::logarithmic("ozone cross-section / m²", 1e-28, 1e-22, 1),
+        vec![
+            Curve::new("measured, 293 K", VERMILION, points(frame, nm, ("ozone_measured_293k_m2", 1.0))?),
+            Curve::new("thesis", GREY, points(frame, nm, ("ozone_thesis_m2", 1.0))?).stroke(Stroke::Dotted),
+        ],
+    );
+    let air = Panel::new(
+        Axis::linear("error of air density / %", -20.0, 0.0, 5.0),
+        Axis::linear("altitude / km", 0.0, 90.0, 10.0),
+        vec![
+            Curve::new("", GREY, points(frame, ("air_density_thesis_relative", 0.01), height)?).stroke(Stroke::Dotted),
+        ],
+    )
+    .key(Key::None);
+    let title = "What the thesis' code had, beside what the tables are made from".into();
+    Ok(Figure { title, rows: vec![vec![profiles, sections.share(1.2), air.share(0.9)]] })
+}
