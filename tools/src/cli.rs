@@ -2,6 +2,7 @@
 
 #[cfg(any(feature = "plot", feature = "study"))]
 mod figures;
+mod aerosol;
 mod mie;
 
 use clap::{Args, Parser, Subcommand};
@@ -31,6 +32,8 @@ enum Command {
     },
     /// Scatter light by spheres: efficiencies and amplitudes of every line of a CSV file
     Mie(mie::MieArgs),
+    /// The aerosols of data/: extinction, albedo, asymmetry, Angstrom exponent and optical depth of each biome
+    Biomes(aerosol::BiomesArgs),
     /// Draw what the tables hold: SVG, PNG and CSV of each figure
     #[cfg(feature = "plot")]
     Plot(figures::PlotArgs),
@@ -50,9 +53,23 @@ struct BuildArgs {
     /// Write nothing: rebuild in memory, compare value by value, and fail if anything differs
     #[arg(long)]
     check: bool,
+    /// Only the tables whose file name contains this; may be given more than once
+    #[arg(long, value_name = "TEXT")]
+    only: Vec<String>,
     /// Say nothing but errors
     #[arg(long)]
     quiet: bool,
+}
+
+impl BuildArgs {
+    /// The tables to make or check.
+    fn targets(&self) -> Result<Vec<Target>, String> {
+        let mut targets = Target::all();
+        if !self.only.is_empty() {
+            targets.retain(|target| self.only.iter().any(|text| target.file_name().contains(text.as_str())));
+        }
+        if targets.is_empty() { Err(format!("no table is called {}", self.only.join(" or "))) } else { Ok(targets) }
+    }
 }
 
 /// Parses the arguments and does what they say: 0 on success, 1 with one sentence on failure, 2 for
@@ -63,6 +80,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Build(args) => build_tables(&args),
         Command::Inspect { file } => show(&file),
         Command::Mie(args) => mie::solve(&args),
+        Command::Biomes(args) => aerosol::biomes(&args),
         #[cfg(feature = "plot")]
         Command::Plot(args) => figures::draw(&args),
         #[cfg(feature = "study")]
@@ -97,7 +115,7 @@ fn build_tables(args: &BuildArgs) -> Result<(), String> {
             say(&format!("{path}  {:>9}  {}", size(built.bytes), seconds(built.time)));
         }
     };
-    let built = build::build(&args.raw_data, &args.data, progress).map_err(|e| e.to_string())?;
+    let built = build::build_some(&args.raw_data, &args.data, &args.targets()?, progress).map_err(|e| e.to_string())?;
     if !args.quiet {
         let total = built.iter().map(|table| table.bytes).sum();
         say(&format!("{} tables, {} in {}", built.len(), size(total), seconds(start.elapsed())));
@@ -107,7 +125,7 @@ fn build_tables(args: &BuildArgs) -> Result<(), String> {
 
 fn check_tables(args: &BuildArgs) -> Result<(), String> {
     let start = Instant::now();
-    let report = build::check(&args.raw_data, &args.data).map_err(|e| e.to_string())?;
+    let report = build::check_some(&args.raw_data, &args.data, &args.targets()?).map_err(|e| e.to_string())?;
     if !args.quiet {
         for table in &report.tables {
             let path = padded(args, &table.target.file_name());

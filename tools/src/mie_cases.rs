@@ -7,7 +7,8 @@ use crate::mie::{MieError, RefractiveIndex, Solver};
 use std::fmt::Write;
 
 /// Angles in degrees at which amplitudes are given, with their cosines.
-const ANGLES: [(u32, f64); 5] = [(0, 1.0), (30, 0.866_025_403_784_438_6), (90, 0.0), (150, -0.866_025_403_784_438_6), (180, -1.0)];
+const ANGLES: [(u32, f64); 5] =
+    [(0, 1.0), (30, 0.866_025_403_784_438_6), (90, 0.0), (150, -0.866_025_403_784_438_6), (180, -1.0)];
 
 /// Why spheres of a file cannot be solved.
 #[derive(Debug, thiserror::Error)]

@@ -10,13 +10,14 @@ use tools::aerosol::mixture::{self, Mixed};
 use tools::aerosol::recipe::{Inputs, Part, Profile, SpeciesRecipe, opac_species, recipe};
 use tools::aerosol::thesis;
 use tools::raw::RawData;
+use tools::raw::aerosol_opac::ComponentOptics;
 
 static RAW: LazyLock<RawData> = LazyLock::new(|| {
     RawData::from_dir(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../raw-data")).expect("raw-data/ is sound")
 });
 
-/// Good to 1e-4 in cross-sections.
-const RULE: Rule = Rule { first: 100, most: 1600, cross_sections: 1e-4, phase: 1.0 };
+/// Good to 1e-3 in cross-sections, which is what is compared here.
+const RULE: Rule = Rule { first: 50, most: 1600, cross_sections: 5e-4, misplaced: 1.0 };
 
 fn inputs() -> Inputs<'static> {
     Inputs { opac: &RAW.aerosol_opac, jaenicke: &RAW.aerosol_jaenicke }
@@ -48,34 +49,41 @@ fn depth_of(profile: Profile) -> f64 {
 #[test]
 fn components_have_the_optics_that_opac_publishes() {
     let opac = &RAW.aerosol_opac;
-    let (mut extinction, mut albedo, mut asymmetry) = ((0.0, ""), (0.0, ""), (0.0, ""));
-    // Every component and humidity at three wavelengths.
-    let rows: Vec<_> =
-        opac.optics.rows.iter().filter(|r| [300.0, 550.0, 1000.0].iter().any(|w| (r.wavelength_nm - w).abs() < 1e-6)).collect();
-    let wavelengths = [300.0, 550.0, 1000.0];
-    let all = rows.iter().map(|r| Part::Component(r.component.clone()).particles(opac, r.humidity_percent).expect("known"));
-    let library = Library::new(opac, all, &wavelengths, &[], &RULE).expect("in range");
-    let mut deviating = Vec::new();
-    for row in &rows {
-        let particles = Part::Component(row.component.clone()).particles(opac, row.humidity_percent).expect("known");
-        let at = wavelengths.iter().position(|w| (row.wavelength_nm - w).abs() < 1e-6).expect("one of three");
-        let found = &library.get(&particles).expect("computed")[at];
-        assert!((found.scattering + found.absorption - found.extinction).abs() < 1e-14 * found.extinction);
-        let (e, a, g) = (
+    let mut wavelengths: Vec<f64> = opac.optics.rows.iter().map(|row| row.wavelength_nm).collect();
+    wavelengths.sort_by(f64::total_cmp);
+    wavelengths.dedup();
+    let of = |row: &ComponentOptics| Part::Component(row.component.clone()).particles(opac, row.humidity_percent);
+    let all = opac.optics.rows.iter().map(|row| of(row).expect("a component"));
+    let library = Library::new(opac, all, &wavelengths, &[], &RULE).expect("spheres in range");
+    let (mut count, mut largest, mut deviating) = (0, [0.0_f64; 3], Vec::new());
+    for row in &opac.optics.rows {
+        let at = wavelengths.iter().position(|w| *w == row.wavelength_nm).expect("one of them");
+        let found = &library.get(&of(row).expect("a component")).expect("computed")[at];
+        let closure = (found.scattering + found.absorption) / found.extinction - 1.0;
+        assert!(closure.abs() < 1e-13, "extinction is scattering and absorption: {closure}");
+        // The source cuts the angles of its coarse sea salt too short at high humidity.
+        let excepted = row.component == "sscm" && row.humidity_percent >= 90.0;
+        let errors = [
             (found.extinction / row.extinction - 1.0).abs(),
             (found.scattering / found.extinction - row.albedo).abs(),
-            (found.asymmetry - row.asymmetry).abs(),
-        );
-        let excepted = row.component == "sscm" && row.humidity_percent >= 90.0;
-        if e > 7e-3 || a > 1e-3 || (g > 1e-2 && !excepted) {
-            deviating.push(format!("{} {} % {} nm: {e:.1e} {a:.1e} {g:.1e}", row.component, row.humidity_percent, row.wavelength_nm));
+            if excepted { 0.0 } else { (found.asymmetry - row.asymmetry).abs() },
+        ];
+        for (largest, error) in largest.iter_mut().zip(errors) {
+            *largest = largest.max(error);
         }
-        if e > extinction.0 { extinction = (e, &row.component) }
-        if a > albedo.0 { albedo = (a, &row.component) }
-        if g > asymmetry.0 && !excepted { asymmetry = (g, &row.component) }
+        if errors.into_iter().zip([7e-3, 1e-3, 1e-2]).any(|(error, limit)| error > limit) {
+            deviating.push(format!(
+                "{} at {} % and {} nm: extinction {:.1e}, albedo {:.1e}, g {:.1e}",
+                row.component, row.humidity_percent, row.wavelength_nm, errors[0], errors[1], errors[2]
+            ));
+        }
+        count += 1;
     }
-    println!("OPAC components, {} rows: extinction within {extinction:?}, albedo {albedo:?}, g {asymmetry:?}", rows.len());
-    assert!(deviating.is_empty(), "{deviating:#?}");
+    println!(
+        "OPAC, {count} rows: extinction within {:.1e}, albedo {:.1e}, g {:.1e}",
+        largest[0], largest[1], largest[2]
+    );
+    assert!(deviating.is_empty(), "beyond 0.7 %, 0.001, 0.01: {deviating:#?}");
 }
 
 #[test]
@@ -104,31 +112,93 @@ fn types_have_their_published_optical_depths() {
     }
 }
 
-#[test]
-fn biomes_of_both_sources_are_as_found() {
-    for source in AerosolSource::ALL {
-        for biome in Biome::ALL {
-            let made = recipe(inputs(), source, biome).expect("a recipe");
-            let species = &made.species[0];
-            let at = optics(species, species.default_humidity, &[440.0, 550.0, 870.0]);
-            let ground = number(species) * at[1].extinction * if let Profile::Floor { floor, .. } = species.profile { 1.0 + floor } else { 1.0 };
-            let angstrom = -(at[0].extinction / at[2].extinction).ln() / (440.0_f64 / 870.0).ln();
-            println!("{source} {biome}: ground {:.5} km^-1, albedo {:.4}, g {:.4}, Angstrom {angstrom:.2}", ground * 1e3, at[1].albedo(), at[1].asymmetry);
+/// Extinction at the ground in km^-1, albedo, g and Angstrom exponent of a biome at 550 nm.
+fn ground(source: AerosolSource, biome: Biome) -> [f64; 4] {
+    let made = recipe(inputs(), source, biome).expect("a recipe");
+    let wavelengths = [440.0, 550.0, 870.0];
+    let mut sums = [[0.0; 3]; 3];
+    for species in &made.species {
+        // A floor comes on top; what is compared is the distribution itself.
+        if matches!(species.profile, Profile::Layer { bottom, .. } if bottom > 0.0) {
+            continue;
         }
+        for (sum, at) in sums.iter_mut().zip(optics(species, species.default_humidity, &wavelengths)) {
+            let n = number(species);
+            sum[0] += n * at.extinction;
+            sum[1] += n * at.scattering;
+            sum[2] += n * at.scattering * at.asymmetry;
+        }
+    }
+    let angstrom = -(sums[0][0] / sums[2][0]).ln() / (wavelengths[0] / wavelengths[2]).ln();
+    [sums[1][0] * 1e3, sums[1][1] / sums[1][0], sums[1][2] / sums[1][1], angstrom]
+}
+
+#[test]
+fn biomes_of_opac_are_within_what_is_published() {
+    // Extinction (km^-1), albedo and g of the types at 550 nm and 80 %: Hess, Koepke & Schult 1998, table 4, to the
+    // digits printed; Angstrom exponents: ranges of the AERONET climatology of such places (Dubovik et al., J. Atmos. Sci.
+    // 59, 590, 2002, table 1: urban 1.0 to 2.5, desert -0.1 to 0.9, oceanic 0 to 1.55 of Lanai).
+    let published = [
+        (Biome::DesertDust, (0.145, 0.888, 0.729), (-0.1, 0.9)),
+        (Biome::MaritimeClean, (0.090, 0.997, 0.772), (0.0, 1.55)),
+        (Biome::PolarAntarctic, (0.011, 1.000, 0.784), (0.0, 2.0)),
+        (Biome::PolarArctic, (0.023, 0.887, 0.721), (0.0, 2.0)),
+        (Biome::RemoteContinental, (0.026, 0.972, 0.709), (1.0, 2.5)),
+        (Biome::Rural, (0.075, 0.925, 0.703), (1.0, 2.5)),
+        (Biome::Urban, (0.353, 0.817, 0.689), (1.0, 2.5)),
+    ];
+    for (biome, (extinction, albedo, asymmetry), (low, high)) in published {
+        let found = ground(AerosolSource::Opac, biome);
+        println!("opac {biome}: {found:?}");
+        // A unit of the third decimal.
+        assert!((found[0] - extinction).abs() < 1e-3 && (found[1] - albedo).abs() < 1e-3, "{biome}: {found:?}");
+        assert!((found[2] - asymmetry).abs() < 2e-3 && (low..=high).contains(&found[3]), "{biome}: {found:?}");
+    }
+}
+
+#[test]
+fn biomes_of_jaenicke_are_what_their_distributions_make() {
+    // Computed apart from Airlight, with miepython, from the same distributions, indices and shares; 4 digits.
+    let expected = [
+        (Biome::Background, 0.2298, 1.0000, 0.7625),
+        (Biome::DesertDust, 1.631, 0.6575, 0.8699),
+        (Biome::MaritimeClean, 0.02347, 1.0000, 0.7391),
+        (Biome::MaritimeMineral, 0.02605, 0.7571, 0.7320),
+        (Biome::PolarAntarctic, 0.001253, 0.9990, 0.7108),
+        (Biome::PolarArctic, 0.001544, 0.8080, 0.6830),
+        (Biome::RemoteContinental, 0.04425, 0.9173, 0.6012),
+        (Biome::Rural, 0.03961, 0.8711, 0.6608),
+        (Biome::Urban, 0.3008, 0.6440, 0.6231),
+    ];
+    for (biome, extinction, albedo, asymmetry) in expected {
+        let found = ground(AerosolSource::Jaenicke, biome);
+        println!("jaenicke {biome}: {found:?}");
+        // Quadratures over sizes of both, and where each cuts the largest.
+        assert!((found[0] / extinction - 1.0).abs() < 3e-3, "{biome}: {found:?}");
+        assert!((found[1] - albedo).abs() < 1.5e-3 && (found[2] - asymmetry).abs() < 4e-3, "{biome}: {found:?}");
     }
 }
 
 #[test]
 fn the_numbers_of_the_thesis_follow_from_its_recipe() {
+    // Root mean square of ln(scattering by the recipe / scattering of the thesis), 300 to 750 nm, as found: single
+    // spheres at the median radii, unweighted. The shares of mixtures were recovered from these very numbers.
     let gavin = &RAW.aerosol_gavin;
-    for (i, biome) in Biome::ALL.into_iter().enumerate() {
-        let (mut worst_s, mut worst_a) = (1.0_f64, 1.0_f64);
-        for row in gavin.cross_sections.rows.iter().filter(|r| r.wavelength_nm <= 1000.0) {
-            let (s, a) = thesis::cross_sections(&RAW.aerosol_opac, &RAW.aerosol_jaenicke, biome, row.wavelength_nm).expect("in range");
-            let (rs, ra) = (s / row.biomes[i].0, a / row.biomes[i].1);
-            if rs.ln().abs() > worst_s.ln().abs() { worst_s = rs }
-            if ra.ln().abs() > worst_a.ln().abs() { worst_a = ra }
-        }
-        println!("{biome}: ours over thesis, worst scattering {worst_s:.3}, absorption {worst_a:.3}");
+    for (i, (biome, limit)) in
+        Biome::ALL.into_iter().zip([0.01, 0.01, 0.15, 0.1, 0.03, 0.1, 0.25, 0.2, 0.1]).enumerate()
+    {
+        let rows = gavin.cross_sections.rows.iter().filter(|row| (300.0..=750.0).contains(&row.wavelength_nm));
+        let logarithms = rows.map(|row| {
+            let (scattering, _) =
+                thesis::cross_sections(&RAW.aerosol_opac, &RAW.aerosol_jaenicke, biome, row.wavelength_nm)
+                    .expect("in range");
+            (scattering / row.biomes[i].0).ln()
+        });
+        let (count, sum) = logarithms.fold((0.0, 0.0), |(n, s), x: f64| (n + 1.0, s + x * x));
+        let rms = (sum / count).sqrt();
+        let right = ground(AerosolSource::Jaenicke, biome)[0];
+        let had = gavin.biomes.rows[i].ground_extinction * 1e3;
+        println!("{biome}: recipe over thesis, rms {rms:.3}; extinction of the thesis over right {:.3e}", had / right);
+        assert!(rms < limit, "{biome}: {rms}");
     }
 }

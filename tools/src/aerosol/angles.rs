@@ -4,8 +4,9 @@ use tables::views::integral;
 
 /// Runs of angles: up to this angle in degrees, by this step. Dense ahead, for the diffraction peak of
 /// coarse particles (its width is some 60/x degrees), and towards 180 degrees, for the glory.
-const RUNS: [(f64, f64); 9] = [
-    (0.2, 0.02),
+const RUNS: [(f64, f64); 10] = [
+    (0.1, 0.01),
+    (0.3, 0.02),
     (0.6, 0.05),
     (2.0, 0.1),
     (5.0, 0.25),

@@ -15,8 +15,8 @@ pub struct Rule {
     pub most: u32,
     /// Largest relative change of extinction, scattering and g that ends the doubling.
     pub cross_sections: f64,
-    /// Largest relative change of the phase function, over all angles, that ends it.
-    pub phase: f64,
+    /// Largest share of the scattered light that may still go elsewhere (see [`QuadratureError::misplaced`]).
+    pub misplaced: f64,
 }
 
 /// Optics of particles of one material and size distribution, per particle.
@@ -37,19 +37,24 @@ pub struct Bulk {
     pub error: QuadratureError,
 }
 
-/// What the last doubling of the nodes changed: a cautious estimate of what is left.
+/// What the last doubling of the nodes changed, or a quarter of what the one before changed if that is more: a cautious
+/// estimate of what is left.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct QuadratureError {
     /// Largest relative change of extinction and scattering cross-section.
     pub cross_sections: f64,
-    /// Largest relative change of the differential cross-section, over the angles.
+    /// Share of the scattered light that went into other directions: half the integral over the sphere of the
+    /// absolute change of the phase function.
+    pub misplaced: f64,
+    /// Largest relative change of the differential cross-section, over the angles: where little light goes, as a
+    /// rule near 180 degrees.
     pub phase: f64,
 }
 
 /// Averages spheres of index `m` over `sizes` at a wavelength in m, at the angles of `angles` (which may be none).
 ///
-/// C = integral of n(ln r) pi r^2 Q(2 pi r / lambda) d ln r by the rules of `rule`; the error is what the last
-/// doubling changed. Radii below x = 1e-6 do not count.
+/// C = integral of n(ln r) pi r^2 Q(2 pi r / lambda) d ln r by the rules of `rule`; the error is that of
+/// [`QuadratureError`]. Radii below x = 1e-6 do not count.
 ///
 /// # Errors
 /// [`AerosolError::Mie`] if a sphere cannot be solved.
@@ -76,16 +81,18 @@ pub fn average(
     let mut intervals = rule.first;
     // The sums without the factor h of the rule.
     let mut total = nodes(0, 1, intervals)?;
+    let mut before: Option<Changes> = None;
     loop {
         let coarse = total.clone();
         intervals *= 2;
         total.add(&nodes(1, 2, intervals)?, 1.0);
-        let relative = |coarse: f64, fine: f64| if fine == 0.0 { 0.0 } else { (2.0 * coarse / fine - 1.0).abs() };
-        let phase = coarse.intensity.iter().zip(&total.intensity).map(|(a, b)| relative(*a, *b)).fold(0.0, f64::max);
-        let cross_sections =
-            relative(coarse.extinction, total.extinction).max(relative(coarse.scattering, total.scattering));
-        let asymmetry = (coarse.forward / coarse.scattering - total.forward / total.scattering).abs();
-        let good = cross_sections.max(asymmetry) < rule.cross_sections && phase < rule.phase;
+        let change = changes(&coarse, &total, angles.cosines());
+        // Two rules can agree by chance: the doubling before has its say.
+        let error = before.map_or(change, |before: Changes| change.or_a_quarter_of(before));
+        let good = before.is_some()
+            && error.optics.max(error.asymmetry) < rule.cross_sections
+            && error.misplaced < rule.misplaced;
+        before = Some(change);
         if good || 2 * intervals > rule.most {
             let h = (high - low) / f64::from(intervals);
             let scale = h / (wave_number * wave_number);
@@ -95,8 +102,41 @@ pub fn average(
                 absorption: scale * total.absorption,
                 asymmetry: total.forward / total.scattering,
                 differential: total.intensity.iter().map(|i| scale * i).collect(),
-                error: QuadratureError { cross_sections, phase },
+                error: QuadratureError { cross_sections: error.optics, misplaced: error.misplaced, phase: error.phase },
             });
         }
+    }
+}
+
+/// What a doubling of the nodes changed: cross-sections, g, and the parts of [`QuadratureError`] about angles.
+#[derive(Debug, Clone, Copy)]
+struct Changes {
+    optics: f64,
+    asymmetry: f64,
+    misplaced: f64,
+    phase: f64,
+}
+
+impl Changes {
+    fn or_a_quarter_of(self, before: Self) -> Self {
+        Self {
+            optics: self.optics.max(0.25 * before.optics),
+            asymmetry: self.asymmetry.max(0.25 * before.asymmetry),
+            misplaced: self.misplaced.max(0.25 * before.misplaced),
+            phase: self.phase.max(0.25 * before.phase),
+        }
+    }
+}
+
+/// Compares the sums of a rule with those of twice the intervals, both without their factor h.
+fn changes(coarse: &Sums, fine: &Sums, cosines: &[f64]) -> Changes {
+    let relative = |coarse: f64, fine: f64| if fine == 0.0 { 0.0 } else { (2.0 * coarse / fine - 1.0).abs() };
+    let pairs = || coarse.intensity.iter().zip(&fine.intensity);
+    let moved: Vec<f64> = pairs().map(|(a, b)| (a / coarse.scattering - b / fine.scattering).abs()).collect();
+    Changes {
+        optics: relative(coarse.extinction, fine.extinction).max(relative(coarse.scattering, fine.scattering)),
+        asymmetry: (coarse.forward / coarse.scattering - fine.forward / fine.scattering).abs(),
+        misplaced: 0.5 * tables::views::integral(cosines, &moved),
+        phase: pairs().map(|(a, b)| relative(*a, *b)).fold(0.0, f64::max),
     }
 }

@@ -76,7 +76,8 @@ impl Library {
     /// [`AerosolError::Missing`] if they were not computed.
     pub fn get(&self, particles: &Particles) -> Result<&[Bulk], AerosolError> {
         let found = self.entries.iter().find(|(key, _)| key == particles);
-        let what = || format!("optics of particles of {} at {} % humidity", particles.material, particles.humidity_percent);
+        let what =
+            || format!("optics of particles of {} at {} % humidity", particles.material, particles.humidity_percent);
         found.map(|(_, optics)| optics.as_slice()).ok_or_else(|| AerosolError::Missing { what: what() })
     }
 }

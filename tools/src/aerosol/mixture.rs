@@ -53,6 +53,7 @@ pub fn mix(parts: &[(&Bulk, f64)], cosines: &[f64]) -> Mixed {
     }
     let error = QuadratureError {
         cross_sections: mean(&|b| b.extinction * b.error.cross_sections) / extinction,
+        misplaced: mean(&|b| b.scattering * b.error.misplaced) / scattering,
         phase: changes.iter().zip(&phase).map(|(change, p)| change / p).fold(0.0, f64::max),
     };
     let correction = if cosines.is_empty() { 0.0 } else { normalise(cosines, &mut phase) };

@@ -14,9 +14,9 @@ pub const HUMIDITIES: [f64; 8] = [0.0, 50.0, 70.0, 80.0, 90.0, 95.0, 98.0, 99.0]
 /// Smallest radius of Jaenicke's distributions, m: below, a sphere contributes less than 1e-6 of a mode.
 const JAENICKE_SMALLEST: f64 = 1e-9;
 
-/// Largest radius of Jaenicke's distributions, m, as OPAC's largest: the second mode of desert dust is so wide
-/// that without a limit stones of metres would make up most of its extinction.
-const JAENICKE_LARGEST: f64 = 100e-6;
+/// Largest radius of Jaenicke's distributions, m: OPAC's for dry coarse particles. The second mode of desert dust is so
+/// wide that its extinction depends on it: 1.06, 1.63, 1.91 and 2.22 km^-1 at 550 nm with 20, 60, 100 and 200 um.
+const JAENICKE_LARGEST: f64 = 60e-6;
 
 /// Particles of one material and size distribution.
 #[derive(Debug, Clone, PartialEq)]
@@ -221,7 +221,10 @@ fn opac(opac: &AerosolOpac, biome: Biome) -> Result<Recipe, AerosolError> {
             let part = (Part::Component("mitr".into()), TRANSPORTED_MINERAL);
             let (humidities, default_humidity) = (vec![0.0], 0.0);
             let name = "transported_mineral";
-            species.insert(1, SpeciesRecipe { name, parts: vec![part], profile: TRANSPORTED_LAYER, humidities, default_humidity });
+            species.insert(
+                1,
+                SpeciesRecipe { name, parts: vec![part], profile: TRANSPORTED_LAYER, humidities, default_humidity },
+            );
             species
         }
         _ => opac_species(opac, name)?,
@@ -281,7 +284,7 @@ pub(super) fn thesis_biome(biome: Biome) -> ThesisBiome {
         Biome::DesertDust => ("desert_dust_storm", &[("mineral", 1.0)], Some(2.0 * KM)),
         Biome::MaritimeClean => ("maritime", &[("sulfate", 0.9), ("sea_salt", 0.1)], Some(0.9 * KM)),
         Biome::MaritimeMineral => ("maritime", &[("sea_salt", 0.54), ("soot", 0.46)], Some(2.0 * KM)),
-        Biome::PolarAntarctic => ("polar", &[("sulfate", 1.0)], Some(30.0 * KM)),
+        Biome::PolarAntarctic => ("polar", &[("sulfate", 0.995), ("mineral", 0.005)], Some(30.0 * KM)),
         Biome::PolarArctic => ("polar", &[("sea_salt", 0.49), ("mineral", 0.255), ("soot", 0.255)], Some(30.0 * KM)),
         Biome::RemoteContinental => ("remote_continental", &[("water_soluble", 1.0)], Some(0.73 * KM)),
         Biome::Rural => ("rural", &[("water_soluble", 0.94), ("soot", 0.06)], Some(0.73 * KM)),

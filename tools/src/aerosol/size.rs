@@ -71,7 +71,8 @@ mod tests {
         for p in [0.0_f64, 1.0, 2.0, 3.0] {
             let (low, high) = (0.1e-6_f64.ln() - 12.0, 0.1e-6_f64.ln() + 12.0);
             let h = (high - low) / 2000.0;
-            let mean: f64 = (0..=2000).map(|i| low + f64::from(i) * h).map(|x| h * (p * x).exp() * sizes.density(x)).sum();
+            let mean: f64 =
+                (0..=2000).map(|i| low + f64::from(i) * h).map(|x| h * (p * x).exp() * sizes.density(x)).sum();
             let exact = 0.1e-6_f64.powf(p) * (0.5 * p * p * s * s).exp();
             // The trapezoidal rule is exact to rounding here.
             assert!((mean / exact - 1.0).abs() < 1e-12, "moment {p}: {mean} for {exact}");

@@ -1,12 +1,12 @@
 //! Tables of aerosol: one for each source and biome.
 
 use super::{field, two_digits};
+use crate::aerosol::AerosolError;
 use crate::aerosol::angles::{cosines, degrees};
 use crate::aerosol::bulk::Rule;
 use crate::aerosol::library::Library;
 use crate::aerosol::mixture::{Mixed, species};
 use crate::aerosol::recipe::{Inputs, Particles, Recipe, SpeciesRecipe, recipe};
-use crate::aerosol::AerosolError;
 use crate::raw::RawData;
 use tables::units::WAVELENGTH_RANGE_NM;
 use tables::views::{AerosolSource, Biome, COSINE, WAVELENGTH, suffix};
@@ -16,7 +16,7 @@ use tables::{Axis, Field, Kind, Precision, Scale, Table, TableError, Tolerance};
 const WAVELENGTH_STEP: f64 = 25.0;
 
 /// How finely sizes are resolved in the tables.
-const RULE: Rule = Rule { first: 50, most: 800, cross_sections: 1e-4, phase: 3e-3 };
+const RULE: Rule = Rule { first: 50, most: 1600, cross_sections: 3e-4, misplaced: 3e-4 };
 
 /// Of the intervals between wavelengths, the interpolation is measured in every how many.
 const MEASURED: usize = 4;
@@ -56,20 +56,16 @@ fn particles<'a>(
     Ok(all)
 }
 
-/// Computes the optics of every kind of particles of every biome.
-pub(super) fn prepare(raw: &RawData) -> Result<Prepared, TableError> {
+/// Computes the optics of every kind of particles of these biomes.
+pub(super) fn prepare(raw: &RawData, aerosols: &[(AerosolSource, Biome)]) -> Result<Prepared, TableError> {
     let (low, high) = WAVELENGTH_RANGE_NM;
     let count = ((high - low) / WAVELENGTH_STEP) as usize + 1;
     let axis = Axis::uniform(WAVELENGTH.0, WAVELENGTH.1, low, WAVELENGTH_STEP, count)?;
     let between: Vec<f64> = axis.nodes.windows(2).step_by(MEASURED).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
     let angles = cosines(&degrees());
     let compute = || -> Result<(Vec<Recipe>, Library, Library), AerosolError> {
-        let mut recipes = Vec::new();
-        for source in AerosolSource::ALL {
-            for biome in Biome::ALL {
-                recipes.push(recipe(inputs(raw), source, biome)?);
-            }
-        }
+        let made = aerosols.iter().map(|&(source, biome)| recipe(inputs(raw), source, biome));
+        let recipes = made.collect::<Result<Vec<_>, _>>()?;
         let all = particles(raw, &recipes, |s| &s.humidities)?;
         let nodes = Library::new(&raw.aerosol_opac, all, &axis.nodes, &angles, &RULE)?;
         let usual = particles(raw, &recipes, |s| std::slice::from_ref(&s.default_humidity))?;
@@ -88,6 +84,7 @@ struct Columns {
     asymmetry: Vec<f64>,
     phase: Vec<f64>,
     cross_section_error: Vec<f64>,
+    misplaced: Vec<f64>,
     phase_error: Vec<f64>,
     largest_correction: f64,
 }
@@ -128,7 +125,7 @@ pub(super) fn table(
     let made = made.ok_or_else(|| TableError::Inconsistent(format!("no recipe of {source} for {biome}")))?;
     let mut axes = vec![prepared.axis.clone(), Axis::new(COSINE.0, COSINE.1, prepared.nodes.cosines().to_vec())?];
     let mut fields = Vec::new();
-    let (mut quadrature, mut angle_error, mut correction) = (0.0_f64, 0.0_f64, 0.0_f64);
+    let (mut quadrature, mut misplaced, mut angle_error, mut correction) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
     for recipe in &made.species {
         let mut columns = Columns::default();
         let mut between = Halves::default();
@@ -140,6 +137,7 @@ pub(super) fn table(
                 columns.asymmetry.push(one.asymmetry);
                 columns.phase.extend(&one.phase);
                 columns.cross_section_error.push(one.error.cross_sections);
+                columns.misplaced.push(one.error.misplaced);
                 columns.phase_error.push(one.error.phase);
                 columns.largest_correction = columns.largest_correction.max(one.correction.abs());
             }
@@ -149,6 +147,7 @@ pub(super) fn table(
             }
         }
         quadrature = columns.cross_section_error.iter().copied().fold(quadrature, f64::max);
+        misplaced = columns.misplaced.iter().copied().fold(misplaced, f64::max);
         angle_error = columns.phase_error.iter().copied().fold(angle_error, f64::max);
         correction = correction.max(columns.largest_correction);
         add_species(&mut axes, &mut fields, recipe, columns, &between)?;
@@ -160,9 +159,13 @@ pub(super) fn table(
         ("particles", "homogeneous spheres, mixed externally".to_owned()),
         ("size average", format!("nested trapezoidal rules in ln r, {} to {} intervals", 2 * RULE.first, RULE.most)),
         ("largest quadrature error of a cross-section", format!("{:e}", two_digits(quadrature))),
-        ("largest quadrature error of a phase function", format!("{:e}", two_digits(angle_error))),
+        ("largest share of light misplaced by quadrature", format!("{:e}", two_digits(misplaced))),
+        ("largest quadrature error of a phase function at an angle", format!("{:e}", two_digits(angle_error))),
         ("largest correction of a phase function to integral 1", format!("{:e}", two_digits(correction))),
-        ("interpolation errors", format!("half-way between wavelengths, in every {MEASURED}th interval, at the default humidity")),
+        (
+            "interpolation errors",
+            format!("half-way between wavelengths, in every {MEASURED}th interval, at the default humidity"),
+        ),
     ];
     let mut provenance = vec![
         raw.aerosol_opac.refractive_index.provenance.clone(),
@@ -220,9 +223,12 @@ fn add_species(
         interpolation_error: Some(two_digits(between.phase)),
         ..field(&full(suffix::PHASE), "sr^-1", &over, 1e-3, columns.phase)
     });
-    for (end, values) in
-        [("_cross_section_quadrature_error", columns.cross_section_error), ("_phase_quadrature_error", columns.phase_error)]
-    {
+    let errors = [
+        ("_cross_section_quadrature_error", columns.cross_section_error),
+        ("_misplaced_by_quadrature", columns.misplaced),
+        ("_phase_quadrature_error", columns.phase_error),
+    ];
+    for (end, values) in errors {
         fields.push(Field {
             // Differences of nearly equal numbers: their last bits are the machine's.
             tolerance: Tolerance { relative: 0.1, absolute: 1e-9 },

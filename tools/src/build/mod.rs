@@ -10,7 +10,7 @@ mod ground;
 mod light;
 mod ozone;
 
-pub use check::{CheckReport, Difference, TableCheck, check};
+pub use check::{CheckReport, Difference, TableCheck, check, check_some};
 
 use crate::raw::{RawData, RawError};
 use rayon::prelude::*;
@@ -91,12 +91,25 @@ pub struct Built {
 /// # Errors
 /// [`BuildError`], of the first table in that order that failed.
 pub fn build(raw_dir: &Path, data_dir: &Path, progress: impl Fn(&Built) + Sync) -> Result<Vec<Built>, BuildError> {
+    build_some(raw_dir, data_dir, &Target::all(), progress)
+}
+
+/// Makes the tables of `targets` alone, as [`build`] makes all.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_some(
+    raw_dir: &Path,
+    data_dir: &Path,
+    targets: &[Target],
+    progress: impl Fn(&Built) + Sync,
+) -> Result<Vec<Built>, BuildError> {
     let raw = RawData::from_dir(raw_dir)?;
     std::fs::create_dir_all(data_dir).map_err(|source| BuildError::Folder { path: data_dir.into(), source })?;
-    let maker = Maker::new(&raw)?;
-    let results: Vec<Result<Built, BuildError>> = Target::all()
-        .into_par_iter()
-        .map(|target| {
+    let maker = Maker::new(&raw, targets)?;
+    let results: Vec<Result<Built, BuildError>> = targets
+        .par_iter()
+        .map(|&target| {
             let built = build_one(&maker, data_dir, target)?;
             progress(&built);
             Ok(built)
@@ -125,8 +138,13 @@ struct Maker<'a> {
 }
 
 impl<'a> Maker<'a> {
-    fn new(raw: &'a RawData) -> Result<Self, TableError> {
-        Ok(Self { raw, aerosols: aerosol::prepare(raw)? })
+    fn new(raw: &'a RawData, targets: &[Target]) -> Result<Self, TableError> {
+        let aerosol = |target: &Target| match *target {
+            Target::Single(_) => None,
+            Target::Aerosol(source, biome) => Some((source, biome)),
+        };
+        let aerosols: Vec<_> = targets.iter().filter_map(aerosol).collect();
+        Ok(Self { raw, aerosols: aerosol::prepare(raw, &aerosols)? })
     }
 
     fn table(&self, target: Target) -> Result<Table, TableError> {

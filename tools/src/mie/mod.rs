@@ -70,7 +70,11 @@ impl RefractiveIndex {
     /// # Errors
     /// [`MieError::Index`] unless n > 0 and k >= 0, both finite.
     pub fn new(n: f64, k: f64) -> Result<Self, MieError> {
-        if n > 0.0 && k >= 0.0 && n.is_finite() && k.is_finite() { Ok(Self { n, k }) } else { Err(MieError::Index { n, k }) }
+        if n > 0.0 && k >= 0.0 && n.is_finite() && k.is_finite() {
+            Ok(Self { n, k })
+        } else {
+            Err(MieError::Index { n, k })
+        }
     }
 
     /// Real part.
@@ -132,7 +136,9 @@ impl fmt::Display for MieError {
             Self::Index { n, k } if *k < 0.0 => {
                 write!(f, "refractive index {n} + ({k})i: k must not be negative; m = n + ik with k > 0 absorbs")
             }
-            Self::Index { n, k } => write!(f, "refractive index {n} + ({k})i: n > 0 and k >= 0 are needed, both finite"),
+            Self::Index { n, k } => {
+                write!(f, "refractive index {n} + ({k})i: n > 0 and k >= 0 are needed, both finite")
+            }
             Self::Size { x } => {
                 write!(f, "size parameter {x}: {:e} to {:e} is possible", SIZE_PARAMETERS.0, SIZE_PARAMETERS.1)
             }

@@ -99,7 +99,9 @@ mod tests {
     fn ratios_reproduce_closed_forms_of_low_order() {
         // psi_1/psi_0 = 1/z - cot z, psi_2/psi_1 = 3/z - psi_0/psi_1, from elementary functions where
         // those neither cancel nor overflow.
-        for z in [Complex64::new(2.3, 0.0), Complex64::new(4.0, 0.7), Complex64::new(0.9, 2.0), Complex64::new(40.0, 12.0)] {
+        for z in
+            [Complex64::new(2.3, 0.0), Complex64::new(4.0, 0.7), Complex64::new(0.9, 2.0), Complex64::new(40.0, 12.0)]
+        {
             let mut r = Vec::new();
             ratios(z, 5, &mut r);
             let first = z.inv() - z.cos() / z.sin();

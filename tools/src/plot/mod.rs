@@ -1,7 +1,7 @@
 //! Figures of what the tables hold: each as SVG, as PNG, and as a CSV of the numbers shown.
 //!
 //! A figure is drawn from the written tables, through [`tables::views`], so it shows what a
-//! renderer will use. One function makes each; [`write`] makes and writes.
+//! renderer will use. One function makes each, and [`write()`] writes it.
 
 mod air;
 mod canvas;

@@ -112,7 +112,9 @@ impl Row for Component {
         ]
     }
 
-    fn from_record((component, material, humidity_percent, r_mod, sigma_g, r_min, r_max, density): Self::Record) -> Self {
+    fn from_record(
+        (component, material, humidity_percent, r_mod, sigma_g, r_min, r_max, density): Self::Record,
+    ) -> Self {
         Self {
             component,
             material,
@@ -228,7 +230,8 @@ impl Row for ComponentOptics {
     }
 
     fn from_record(record: Self::Record) -> Self {
-        let (component, humidity_percent, wavelength_um, extinction, scattering, absorption, albedo, asymmetry) = record;
+        let (component, humidity_percent, wavelength_um, extinction, scattering, absorption, albedo, asymmetry) =
+            record;
         Self {
             component,
             humidity_percent,
