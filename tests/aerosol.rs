@@ -2,7 +2,9 @@
 
 use airlight_tests::data;
 use glam::DVec3;
-use renderer::atmosphere::{Air, AirError, AirSettings, Amount, Haze, HazePhase, HazeSettings, KOSCHMIEDER, OzoneSource};
+use renderer::atmosphere::{
+    Air, AirError, AirSettings, Amount, Haze, HazePhase, HazeSettings, KOSCHMIEDER, OzoneSource,
+};
 use renderer::geometry::{Place, Shape};
 use tables::units::EARTH_RADIUS_M;
 use tables::views::{AerosolSource, Biome};
