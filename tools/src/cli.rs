@@ -1,8 +1,8 @@
 //! The command line. Results go to standard output, progress and errors to standard error.
 
+mod aerosol;
 #[cfg(any(feature = "plot", feature = "study"))]
 mod figures;
-mod aerosol;
 mod mie;
 
 use clap::{Args, Parser, Subcommand};
