@@ -109,7 +109,8 @@ impl Camera {
             .filter_map(|(dx, dy)| self.direction(x + dx, y + dy))
             .map(|corner| 2.0 * (0.5 * corner.distance(middle)).min(1.0).asin())
             .fold(0.0, f64::max);
-        Some(if reach == 0.0 { PI } else { 1.25 * reach })
+        // The corners of a pixel that spans a good part of the sphere do not bound it.
+        Some(if reach == 0.0 || reach > 0.25 * PI { PI } else { 1.25 * reach })
     }
 }
 

@@ -1,7 +1,7 @@
 //! What Airlight's data tool writes and its renderer reads.
 //!
 //! A [`Table`] is a titled set of [`Axis`] and [`Field`] with settings and
-//! [`Provenance`]; [`file`] turns it into bytes and back; [`Curve`] interpolates
+//! [`Provenance`]; [`mod@file`] turns it into bytes and back; [`Curve`] interpolates
 //! along one axis by the rule which that axis names; [`views`] holds one typed,
 //! validated reading per [`Kind`], so that no name of a field or unit is
 //! spelled in two places. `docs/table-format.md` describes the bytes.

@@ -130,7 +130,7 @@ pub struct Field {
     pub scale: Scale,
     /// How exactly a rebuild must agree.
     pub tolerance: Tolerance,
-    /// Measured error of interpolating between nodes, relative to the value,
+    /// Measured error of interpolating between nodes, relative to the value (of an asymmetry: absolute),
     /// or `None` where the nodes themselves are the data.
     pub interpolation_error: Option<f64>,
     /// The values.

@@ -185,7 +185,7 @@ fn the_numbers_of_the_thesis_follow_from_its_recipe() {
     // spheres at the median radii, unweighted. The shares of mixtures were recovered from these very numbers.
     let gavin = &RAW.aerosol_gavin;
     for (i, (biome, limit)) in
-        Biome::ALL.into_iter().zip([0.01, 0.01, 0.15, 0.1, 0.03, 0.1, 0.25, 0.2, 0.1]).enumerate()
+        Biome::ALL.into_iter().zip([0.002, 0.002, 0.15, 0.05, 0.03, 0.05, 0.25, 0.002, 0.016]).enumerate()
     {
         let rows = gavin.cross_sections.rows.iter().filter(|row| (300.0..=750.0).contains(&row.wavelength_nm));
         let logarithms = rows.map(|row| {

@@ -1,10 +1,10 @@
 //! The atmosphere of the tables: molecules, ozone of a month and a place, an aerosol.
 
-use super::{Component, Haze, Medium, MediumError, REFERENCE_NM};
+use super::{Component, Haze, Medium, MediumError};
 use crate::data::Data;
 use crate::phase::Phase;
 use serde::{Deserialize, Serialize};
-use tables::views::{OzoneCrossSection, OzoneProfile, Rayleigh, StandardAtmosphere};
+use tables::views::{OzoneCrossSection, OzoneProfile, REFERENCE_WAVELENGTH_NM, Rayleigh, StandardAtmosphere};
 use tables::{Axis, Curve, Interpolation, Outside, Scale, TableError};
 
 /// Which measured ozone profile is taken.
@@ -129,7 +129,7 @@ impl Air {
     /// # Errors
     /// [`AirError::Table`] if the tables do not reach there.
     pub fn ground_extinction(&self) -> Result<f64, AirError> {
-        Ok(self.density.at(0.0)? * self.rayleigh.cross_section_m2.at(REFERENCE_NM)?)
+        Ok(self.density.at(0.0)? * self.rayleigh.cross_section_m2.at(REFERENCE_WAVELENGTH_NM)?)
     }
 
     /// Vertical ozone column in Dobson units.
@@ -179,6 +179,11 @@ impl Air {
     }
 }
 
+/// The temperatures in K at which ozone's cross-section was measured (Serdyuchenko et al. 2014). Colder air (85
+/// to 92 km) and warmer air (above 113 km) absorbs as at the nearest: there is next to no ozone, and a
+/// polynomial beyond its data may turn negative.
+const MEASURED_K: (f64, f64) = (193.0, 293.0);
+
 /// N, N (T - T_0) and N (T - T_0)^2 on the nodes of both the ozone profile and the
 /// temperature, linear between them. T runs linearly between its nodes, so on
 /// the common nodes (at most 250 m apart) a product of the two differs from its chord by under 1e-4.
@@ -204,7 +209,8 @@ fn ozone_terms(
             Some(next) if steps => 0.5 * (z + next),
             _ => z,
         };
-        let dt = temperature.at(at)? - cross_section.reference_temperature_k;
+        let (coldest, warmest) = MEASURED_K;
+        let dt = temperature.at(at)?.clamp(coldest, warmest) - cross_section.reference_temperature_k;
         let density = scale * profile.at(z)?;
         for (power, term) in (0..).zip(&mut terms) {
             term.push(density * dt.powi(power));

@@ -6,10 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use tables::TableError;
 use tables::units::KM;
-use tables::views::{Aerosol, Species};
-
-/// Wavelength in nm at which an amount is stated.
-pub const REFERENCE_NM: f64 = 550.0;
+use tables::views::{Aerosol, REFERENCE_WAVELENGTH_NM, Species};
 
 /// Koschmieder's constant for a contrast threshold of 2 %: visibility = 3.912 / extinction.
 pub const KOSCHMIEDER: f64 = 3.912;
@@ -19,7 +16,8 @@ pub const KOSCHMIEDER: f64 = 3.912;
 pub enum Amount {
     /// As much as the type has.
     Own,
-    /// So much that the vertical optical depth at 550 nm is this.
+    /// So much that the vertical optical depth at 550 nm is this: that of the whole column, of which a
+    /// lower top of the scene cuts off a part.
     OpticalDepth(f64),
     /// So much that the visibility in km is this: 3.912 over the extinction coefficient of
     /// aerosol and molecules at the ground at 550 nm (Koschmieder 1924).
@@ -74,8 +72,8 @@ impl Haze {
                 return Err(AirError::Dry { biome: biome.to_string(), source_name: source.to_string(), percent });
             }
         }
-        let own_depth = aerosol.optical_depth(humidity, REFERENCE_NM)?;
-        let own_extinction = aerosol.ground_extinction(humidity, REFERENCE_NM)?;
+        let own_depth = aerosol.optical_depth(humidity, REFERENCE_WAVELENGTH_NM)?;
+        let own_extinction = aerosol.ground_extinction(humidity, REFERENCE_WAVELENGTH_NM)?;
         let factor = match settings.amount {
             Amount::Own => 1.0,
             Amount::OpticalDepth(asked) => asked / own_depth,
@@ -97,7 +95,7 @@ impl Haze {
         })
     }
 
-    /// Vertical optical depth at 550 nm.
+    /// Vertical optical depth at 550 nm of the whole column, whatever the top of the scene.
     #[must_use]
     pub fn optical_depth(&self) -> f64 {
         self.optical_depth

@@ -10,5 +10,5 @@ mod haze;
 mod medium;
 
 pub use air::{Air, AirError, AirSettings, OzoneSource};
-pub use haze::{Amount, Haze, HazePhase, HazeSettings, KOSCHMIEDER, REFERENCE_NM};
+pub use haze::{Amount, Haze, HazePhase, HazeSettings, KOSCHMIEDER};
 pub use medium::{Component, Local, MAX_COMPONENTS, Medium, MediumError, Shell};

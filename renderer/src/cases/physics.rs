@@ -50,6 +50,7 @@ impl Estimand {
         match self.quantity {
             Quantity::Direct => Some(self.direct()),
             Quantity::Reflected if self.albedo == 0.0 => Some(0.0),
+            Quantity::Reflected if self.max_orders == Some(1) => Some(self.albedo * self.direct()),
             _ => None,
         }
     }
@@ -72,6 +73,7 @@ impl Estimand {
             Quantity::Radiance(direction) => self.radiance(method, direction, sampler),
             Quantity::Direct => self.direct(),
             Quantity::Diffuse => flux(self.place.up, sampler),
+            // The reflection is an order of its own: see `radiance`.
             Quantity::Reflected => self.albedo * (self.direct() + flux(self.place.up, sampler)),
             Quantity::Upward => flux(-self.place.up, sampler),
         }
@@ -84,7 +86,7 @@ impl Estimand {
             albedo: [self.albedo],
             sun: Some(&self.sun),
             environment: None,
-            max_orders: self.max_orders,
+            max_orders: self.max_orders.map(|n| if self.quantity == Quantity::Reflected { n - 1 } else { n }),
         };
         let [radiance] = transport::radiance(method, &problem, self.place, direction, sampler);
         self.f0 * radiance
@@ -122,11 +124,14 @@ pub(super) fn prepare(case: &Case, profiles: &BTreeMap<String, Profile>) -> Resu
         }
         other => return Err(format!("geometry {other:?} is neither plane-parallel nor spherical")),
     };
-    let altitude_m = match (case.observer.as_str(), case.observer_alt_km) {
-        ("top", None) => medium.top_m(),
-        ("ground" | "bottom", None) => 0.0,
-        (_, Some(km)) => km * KM,
-        (other, None) => return Err(format!("observer {other:?} needs observer_alt_km")),
+    // A flux is that of the place in its name.
+    let altitude_m = match (case.quantity.as_str(), case.observer.as_str(), case.observer_alt_km) {
+        ("flux_up_top", ..) => medium.top_m(),
+        (flux, ..) if flux.starts_with("flux") => 0.0,
+        (_, "top", None) => medium.top_m(),
+        (_, "ground" | "bottom", None) => 0.0,
+        (_, _, Some(km)) => km * KM,
+        (_, other, None) => return Err(format!("observer {other:?} needs observer_alt_km")),
     };
     ranged("observer_alt_km", altitude_m / KM, 0.0, 1e9)?;
     let (sin, cos) = case.sza_deg.to_radians().sin_cos();
@@ -199,10 +204,7 @@ fn layered(layers: &[Layer]) -> Result<Medium<1>, String> {
     for (from_top, layer) in layers.iter().enumerate() {
         ranged("tau", layer.tau, 0.0, 1e6)?;
         ranged("ssa", layer.ssa, 0.0, 1.0)?;
-        let weights: f64 = layer.phase.iter().map(|(weight, ..)| weight).sum();
-        if layer.phase.iter().any(|(weight, ..)| *weight < 0.0) || (weights - 1.0).abs() > 1e-6 {
-            return Err(format!("the weights of a layer's phase functions must add up to 1, not {weights}"));
-        }
+        let weights = total_weight(&layer.phase)?;
         let bottom = (count - 1 - from_top) as f64 * LAYER_M;
         let density = slab(bottom, bottom + LAYER_M)?;
         for (weight, kind, parameter) in &layer.phase {
@@ -216,6 +218,15 @@ fn layered(layers: &[Layer]) -> Result<Medium<1>, String> {
         }
     }
     Medium::new(components, top).map_err(|e| e.to_string())
+}
+
+/// The sum of the weights of phase functions, which must be 1.
+fn total_weight(phases: &[(f64, String, f64)]) -> Result<f64, String> {
+    let sum: f64 = phases.iter().map(|(weight, ..)| weight).sum();
+    if phases.iter().any(|(weight, ..)| *weight < 0.0) || !(1.0 - 1e-6..=1.0 + 1e-6).contains(&sum) {
+        return Err(format!("the weights of phase functions must be positive and add up to 1, not {sum}"));
+    }
+    Ok(sum)
 }
 
 /// 1 between two altitudes in m and 0 elsewhere.
@@ -261,9 +272,10 @@ fn spherical(profile: &Profile, phases: Option<&[(f64, String, f64)]>) -> Result
     } else {
         let scattering =
             profile.scattering_per_km.as_ref().ok_or("the profile has neither scattering_per_km nor components")?;
-        for (weight, kind, parameter) in phases.ok_or("a case with a plain profile needs a phase")? {
-            ranged("weight of a phase function", *weight, 0.0, 1.0)?;
-            add(scattering, *weight, 1.0, phase(kind, *parameter)?)?;
+        let phases = phases.ok_or("a case with a plain profile needs a phase")?;
+        let weights = total_weight(phases)?;
+        for (weight, kind, parameter) in phases {
+            add(scattering, weight / weights, 1.0, phase(kind, *parameter)?)?;
         }
         if let Some(absorption) = &profile.absorption_per_km {
             add(absorption, 1.0, 0.0, none)?;

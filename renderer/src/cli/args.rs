@@ -136,7 +136,8 @@ pub(super) struct AerosolArgs {
     /// Phase function of the aerosol: mie or hg (Henyey-Greenstein of the same asymmetry) [default: mie]
     #[arg(long, value_name = "NAME")]
     pub phase: Option<PhaseName>,
-    /// Amount as vertical optical depth at 550 nm, 0 to 20 [default: the type's own amount]
+    /// Amount as vertical optical depth at 550 nm (of the whole column, whatever --top), 0 to 20
+    /// [default: the type's own amount]
     #[arg(long, value_name = "X", conflicts_with_all = ["visibility", "turbidity"])]
     pub aod: Option<f64>,
     /// Amount as visibility at the ground in km, 0.05 to 400: 3.912 over the extinction at 550 nm,
@@ -276,8 +277,15 @@ fn pixel(text: &str) -> Result<(u32, u32), String> {
 impl RenderArgs {
     /// The scene of the flags laid over `base`, validated.
     pub(super) fn scene(&self, base: Scene) -> Result<Scene, SceneError> {
-        // An amount on the command line replaces that of the scene, of whichever kind.
-        let amount = self.aerosol.aod.or(self.aerosol.visibility).or(self.aerosol.turbidity).is_some();
+        let biome = self.aerosol.biome.map_or(base.biome, |name| name.0);
+        let chosen =
+            [("aerosol-source", self.aerosol.aerosol_source.is_some()), ("phase", self.aerosol.phase.is_some())];
+        if let (None, Some((flag, _))) = (biome, chosen.iter().find(|(_, given)| *given)) {
+            return Err(SceneError::Refused(format!("{flag} says something of an aerosol: name its biome too")));
+        }
+        // An amount on the command line replaces that of the scene, of whichever kind; so does no aerosol at all.
+        let none = biome.is_none() && self.aerosol.biome.is_some();
+        let amount = none || self.aerosol.aod.or(self.aerosol.visibility).or(self.aerosol.turbidity).is_some();
         let scene = Scene {
             altitude_km: self.altitude.unwrap_or(base.altitude_km),
             top_km: self.top.unwrap_or(base.top_km),
@@ -288,9 +296,9 @@ impl RenderArgs {
             latitude_deg: self.latitude.unwrap_or(base.latitude_deg),
             ozone_source: self.ozone_source.map_or(base.ozone_source, Into::into),
             ozone_du: self.ozone.or(base.ozone_du),
-            biome: self.aerosol.biome.map_or(base.biome, |name| name.0),
+            biome,
             aerosol_source: self.aerosol.aerosol_source.unwrap_or(base.aerosol_source),
-            humidity_percent: self.aerosol.humidity.or(base.humidity_percent),
+            humidity_percent: self.aerosol.humidity.or(base.humidity_percent.filter(|_| !none)),
             aod: self.aerosol.aod.or(base.aod.filter(|_| !amount)),
             visibility_km: self.aerosol.visibility.or(base.visibility_km.filter(|_| !amount)),
             turbidity: self.aerosol.turbidity.or(base.turbidity.filter(|_| !amount)),

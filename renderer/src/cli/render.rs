@@ -34,8 +34,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
         });
     };
     let work = || -> Result<(Summary, DiscLayer, Rendering), RenderError> {
-        let summary = Summary::new(&sky, scene.seed);
         let rendering = render(&scene, &sky, Control { stop: &stop, observe: &observe })?;
+        let summary = Summary::new(&sky, scene.seed, &stop);
         Ok((summary, disc_layer(&scene, &sky), rendering))
     };
     let (summary, disc, rendering) = pool.install(work).map_err(|error| match error {

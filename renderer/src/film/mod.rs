@@ -181,7 +181,8 @@ impl Film {
             of_luminance.push(error / mean);
         }
         Errors {
-            relative: (squared / count).sqrt() / (radiance / count),
+            // Nothing seen yet says nothing of the error.
+            relative: if radiance == 0.0 { f64::INFINITY } else { (squared / count).sqrt() / (radiance / count) },
             median_luminance: median(of_luminance),
             median_spectral: median(of_radiance),
         }

@@ -13,6 +13,9 @@ const KEY: f64 = 0.22;
 /// From here the tone curve bends towards white.
 const SHOULDER: f64 = 0.7;
 
+/// How many times beyond display white a colour has faded half-way to white.
+const FADE: f64 = 8.0;
+
 /// Luminance in cd/m^2 that becomes display white at an exposure value (ISO 100): 1.2 * 2^EV.
 #[must_use]
 pub fn white_cd_m2(exposure_ev: f64) -> f64 {
@@ -46,7 +49,8 @@ pub fn automatic_ev(picture: &Picture<'_>) -> f64 {
 /// A colour outside the gamut is first mixed with the grey of its luminance until its
 /// lowest component is 0. Then the largest component m becomes m up to 0.7, and
 /// 1 - 0.3 exp(-(m - 0.7)/0.3) above (slope 1 where they meet, 1 for m without bound); the others
-/// follow in proportion, so hue and saturation stay.
+/// follow in proportion, so hue and saturation stay. What exceeds white, m > 1, fades towards it by the share
+/// (m - 1) / (m + 7), as film and eye do: the sun is brighter than its aureole, so it must not look darker.
 #[must_use]
 pub fn display(rgb: [f64; 3], white_cd_m2: f64) -> [f64; 3] {
     let y = luminance(rgb);
@@ -62,7 +66,12 @@ pub fn display(rgb: [f64; 3], white_cd_m2: f64) -> [f64; 3] {
     } else {
         largest
     };
-    if largest > 0.0 { inside.map(|c| c * (shown / largest)) } else { inside }
+    if largest <= 0.0 {
+        return inside;
+    }
+    let beyond = (largest - 1.0).max(0.0);
+    let faded = beyond / (beyond + FADE);
+    inside.map(|c| shown * (faded + (1.0 - faded) * c / largest))
 }
 
 /// The eight-bit code of a linear display value (IEC 61966-2-1).
@@ -80,15 +89,20 @@ mod tests {
 
     #[test]
     fn the_curve_is_the_identity_below_and_never_passes_white() {
-        assert_eq!(display([30.0, 20.0, 10.0], 100.0), [0.3, 0.2, 0.1]);
-        let mut last = 0.0;
+        let shown = display([30.0, 20.0, 10.0], 100.0);
+        // Rounding of the proportions.
+        assert!(shown.iter().zip([0.3, 0.2, 0.1]).all(|(a, b)| (a - b).abs() < 1e-15), "{shown:?}");
+        let mut last = [0.0; 3];
         for exponent in -8..60 {
-            let [r, g, b] = display([2.0_f64.powi(exponent), 2.0_f64.powi(exponent - 1), 0.0], 1.0);
-            assert!(r >= last && r <= 1.0 && b == 0.0);
-            // Proportions stay: rounding only.
-            assert!((g - 0.5 * r).abs() < 1e-15);
-            last = r;
+            let shown = display([2.0_f64.powi(exponent), 2.0_f64.powi(exponent - 1), 0.0], 1.0);
+            assert!(shown.iter().zip(last).all(|(now, before)| *now >= before && *now <= 1.0), "{shown:?}");
+            if exponent <= 0 {
+                // Up to white proportions stay.
+                assert!((shown[1] - 0.5 * shown[0]).abs() < 1e-15 && shown[2] == 0.0, "{shown:?}");
+            }
+            last = shown;
         }
+        assert!(last.iter().all(|c| *c > 1.0 - 1e-12), "a light without bound is white: {last:?}");
     }
 
     #[test]

@@ -6,13 +6,18 @@ use crate::light::solar_angular_radius;
 use crate::scene::Scene;
 use rayon::prelude::*;
 
-/// Points across the radius of the disc, and the fewest and most points across a pixel.
+/// Points across the radius of the disc, and the fewest points across a pixel. Pixels that would so have more
+/// than [`MANY`] make do with the coarse number, and with no more than [`MOST`].
 const ACROSS_RADIUS: f64 = 32.0;
-const ACROSS_PIXEL: (f64, f64) = (4.0, 96.0);
+const COARSE: f64 = 8.0;
+const LEAST: f64 = 4.0;
+const MANY: f64 = 96.0;
+const MOST: f64 = 4096.0;
 
 /// What the solar disc adds to each pixel, in sr^-1 per unit solar irradiance: the mean over a
 /// grid of points in the pixel of the disc's radiance times the transmittance of the air, the
-/// points at most 1/32 of the disc's radius apart (96 across a pixel at most). Empty if the disc
+/// points 1/32 of the disc's radius apart; 1/8 in pixels larger than the disc, and 4096 across at
+/// most. Empty if the disc
 /// is not to be seen. Points outside the circle of a fisheye do not count.
 #[must_use]
 pub fn disc_layer(scene: &Scene, sky: &Sky) -> DiscLayer {
@@ -28,7 +33,8 @@ pub fn disc_layer(scene: &Scene, sky: &Sky) -> DiscLayer {
         if middle.angle_between(sky.sun_direction()) > radius + reach {
             return None;
         }
-        let points = (2.0 * reach / radius * ACROSS_RADIUS).clamp(ACROSS_PIXEL.0, ACROSS_PIXEL.1).ceil() as u32;
+        let radii = 2.0 * reach / radius;
+        let points = (radii * ACROSS_RADIUS).clamp(LEAST, MANY).max(radii * COARSE).min(MOST).ceil() as u32;
         let mut factors = vec![0.0; sky.wavelengths()];
         let (mut inside, mut lit) = (0.0, false);
         for j in 0..points {

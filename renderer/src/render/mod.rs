@@ -90,12 +90,16 @@ pub struct Rendering {
 /// No error is believed before so many samples of each pixel.
 const LEAST_FOR_ERROR: u32 = 8;
 
+/// A picture that is still black after so many samples of each pixel is taken for black,
+/// whatever error is asked for.
+const MOST_IN_THE_DARK: u32 = 1024;
+
 /// A pass over a small picture takes as many samples of each pixel as make this many in all.
 const PASS_SAMPLES: usize = 16_384;
 
 /// Renders a valid scene on the current thread pool: pass after pass over all pixels until the
 /// samples of [`Scene::spp_limit`] are taken, [`Scene::error`] is reached
-/// (after 8 samples at the earliest) or `control` stops it.
+/// (after 8 samples at the earliest; a picture without any light ends after 1024) or `control` stops it.
 ///
 /// # Errors
 /// [`RenderError::NotFinite`] for the first pixel with such a sample.
@@ -136,7 +140,8 @@ pub fn render(scene: &Scene, sky: &Sky, control: Control<'_>) -> Result<Renderin
         taken = samples.end;
         errors = film.errors();
         let reached = taken >= LEAST_FOR_ERROR && scene.error.is_some_and(|wanted| errors.relative <= wanted);
-        if reached || cut.load(Ordering::Relaxed) {
+        let black = scene.error.is_some() && errors.relative.is_infinite() && taken >= MOST_IN_THE_DARK;
+        if reached || black || cut.load(Ordering::Relaxed) {
             break;
         }
     }

@@ -6,6 +6,7 @@ use crate::sampling::{Sampler, cosine_hemisphere};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Light at the observer's place, whatever the camera looks at.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,20 +33,27 @@ const ENOUGH: f64 = 5e-3;
 impl Summary {
     /// Computes the summary on the current thread pool: the sun by quadrature
     /// ([`Sky::direct_irradiance`]); the sky as pi times the mean luminance over directions
-    /// distributed as cos(theta)/pi; both estimates to 0.5 % standard error or 131 072 samples.
+    /// distributed as cos(theta)/pi; both estimates to 0.5 % standard error or 131 072 samples, fewer once `stop`
+    /// is set.
     #[must_use]
-    pub fn new(sky: &Sky, seed: u64) -> Self {
-        let hemisphere = estimate(sky, seed, HEMISPHERE, |sampler| cosine_hemisphere(DVec3::Z, sampler.uniform_2d()));
+    pub fn new(sky: &Sky, seed: u64, stop: &AtomicBool) -> Self {
+        let hemisphere =
+            estimate(sky, (seed, HEMISPHERE), stop, |sampler| cosine_hemisphere(DVec3::Z, sampler.uniform_2d()));
         Self {
             sun_lux: sky.colour().xyz(&sky.direct_irradiance())[1],
             sky_lux: Estimate { mean: PI * hemisphere.mean, error: PI * hemisphere.error },
-            zenith_cd_m2: estimate(sky, seed, ZENITH, |_| DVec3::Z),
+            zenith_cd_m2: estimate(sky, (seed, ZENITH), stop, |_| DVec3::Z),
         }
     }
 }
 
 /// Mean luminance over the directions that `draw` gives.
-fn estimate(sky: &Sky, seed: u64, stream: u64, draw: impl Fn(&mut Sampler) -> DVec3 + Sync) -> Estimate {
+fn estimate(
+    sky: &Sky,
+    (seed, stream): (u64, u64),
+    stop: &AtomicBool,
+    draw: impl Fn(&mut Sampler) -> DVec3 + Sync,
+) -> Estimate {
     let (mut count, mut mean, mut squares) = (0.0, 0.0, 0.0);
     for first in (0..MOST).step_by(BATCH as usize) {
         // Collected in order and summed by one thread: the same sum for any number of threads.
@@ -65,7 +73,8 @@ fn estimate(sky: &Sky, seed: u64, stream: u64, draw: impl Fn(&mut Sampler) -> DV
             mean += deviation / count;
             squares += deviation * (y - mean);
         }
-        if squares <= (ENOUGH * mean).powi(2) * count * (count - 1.0) {
+        let known = mean > 0.0 && squares <= (ENOUGH * mean).powi(2) * count * (count - 1.0);
+        if known || stop.load(Ordering::Relaxed) {
             break;
         }
     }

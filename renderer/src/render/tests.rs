@@ -32,7 +32,7 @@ fn any_number_of_threads_gives_the_same_picture() {
     let picture = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let rendering = pool.install(|| render(&scene, &sky, RUN)).expect("finite");
-        (format!("{:?}", rendering.film), pool.install(|| Summary::new(&sky, 7)))
+        (format!("{:?}", rendering.film), pool.install(|| Summary::new(&sky, 7, &NEVER)))
     };
     assert_eq!(picture(1), picture(3));
 }
@@ -107,7 +107,7 @@ fn direct_sunlight_follows_beer_and_lambert() {
 fn above_the_atmosphere_the_zenith_is_black() {
     let scene = Scene { altitude_km: 400.0, ..small() };
     let sky = sky(&scene);
-    let summary = Summary::new(&sky, 0);
+    let summary = Summary::new(&sky, 0, &NEVER);
     assert_eq!((summary.zenith_cd_m2.mean, summary.sky_lux.mean), (0.0, 0.0));
     // 133.1 klux above the atmosphere (G173), times sin 30 degrees; three wavelengths
     // carry a constant exactly.

@@ -149,28 +149,12 @@ impl Scene {
         Ok(serde_json::from_str(text)?)
     }
 
-    /// The scene with every default that depends on others written out.
-    #[must_use]
-    pub fn resolved(&self) -> Self {
-        let (width, height) = self.size();
-        let (view_azimuth_deg, view_elevation_deg) = self.view_deg();
-        let sphere = self.camera == CameraKind::Latlong;
-        Self {
-            fov_deg: (!sphere).then(|| self.field_of_view_deg()),
-            view_azimuth_deg: Some(view_azimuth_deg),
-            view_elevation_deg: (!sphere).then_some(view_elevation_deg),
-            width: Some(width),
-            height: Some(height),
-            spp: self.spp_limit(),
-            ..self.clone()
-        }
-    }
-
-    /// The scene as JSON, one line, defaults written out.
+    /// The scene as JSON, one line. Defaults that depend on other choices stay open, so that flags laid
+    /// over the scene of a picture find them as if it were new.
     #[must_use]
     pub fn to_json(&self) -> String {
         // A struct of numbers and words has no value that JSON lacks once validated.
-        serde_json::to_string(&self.resolved()).unwrap_or_default()
+        serde_json::to_string(self).unwrap_or_default()
     }
 
     /// Whether the observer is at or above the top of the atmosphere.
@@ -293,8 +277,7 @@ mod tests {
     fn json_of_a_scene_reads_back_as_the_same_picture() {
         let scene = Scene { albedo: Albedo::Ground("ocean".into()), error: Some(0.02), ..Scene::default() };
         let read = Scene::from_json(&scene.to_json()).expect("reads");
-        assert_eq!(read, scene.resolved());
-        assert_eq!(read.camera(), scene.camera());
+        assert_eq!(read, scene);
     }
 
     #[test]

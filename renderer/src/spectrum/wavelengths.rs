@@ -74,13 +74,8 @@ impl Wavelengths {
     /// # Errors
     /// [`SpectrumError::Count`] for none or more than [`MAX_WAVELENGTHS`].
     pub fn visible(count: usize) -> Result<Self, SpectrumError> {
-        let (first, last) = VISIBLE_NM;
         match count {
-            1 => Self::new(vec![0.5 * (first + last)]),
-            2..=MAX_WAVELENGTHS => {
-                let step = (last - first) / (count - 1) as f64;
-                Self::new((0..count).map(|i| if i + 1 == count { last } else { first + i as f64 * step }).collect())
-            }
+            1..=MAX_WAVELENGTHS => Self::new(evenly(count)),
             _ => Err(SpectrumError::Count(count)),
         }
     }
@@ -111,8 +106,16 @@ impl Wavelengths {
 /// 16 wavelengths from 380 to 780 nm.
 impl Default for Wavelengths {
     fn default() -> Self {
-        let (first, last) = VISIBLE_NM;
-        Self((0..16).map(|i| first + f64::from(i) * (last - first) / 15.0).collect())
+        Self(evenly(16))
+    }
+}
+
+/// `count` equally spaced wavelengths from end to end of the visible; the middle for one.
+fn evenly(count: usize) -> Vec<f64> {
+    let (first, last) = VISIBLE_NM;
+    match count {
+        1 => vec![0.5 * (first + last)],
+        _ => (0..count).map(|i| first + (last - first) * i as f64 / (count - 1) as f64).collect(),
     }
 }
 

@@ -157,7 +157,7 @@ pub(super) fn table(
         ("source", source.to_string()),
         ("composition", made.composition.clone()),
         ("particles", "homogeneous spheres, mixed externally".to_owned()),
-        ("size average", format!("nested trapezoidal rules in ln r, {} to {} intervals", 2 * RULE.first, RULE.most)),
+        ("size average", format!("nested trapezoidal rules in ln r, {} to {} intervals", 4 * RULE.first, RULE.most)),
         ("largest quadrature error of a cross-section", format!("{:e}", two_digits(quadrature))),
         ("largest share of light misplaced by quadrature", format!("{:e}", two_digits(misplaced))),
         ("largest quadrature error of a phase function at an angle", format!("{:e}", two_digits(angle_error))),
