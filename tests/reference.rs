@@ -1,6 +1,8 @@
 //! Radiances by other programs: plane-parallel layers and spherical atmospheres,
 //! from the ground and from space, one order and all, clear and with aerosol.
 
+#![allow(clippy::print_stdout, reason = "the figures found: cargo test -- --nocapture shows them")]
+
 use airlight_tests::root;
 use renderer::cases::{Effort, Settings, Tier, read, run};
 use renderer::transport::Method;
@@ -26,13 +28,19 @@ fn agree(file: &str, most: f64) {
         let report = run(&suite, &settings, &|_, _| {});
         assert_eq!(report.refusals, [], "{method:?}");
         assert_eq!(report.answers.len(), expected.len());
-        let mut squares = 0.0;
+        let (mut squares, mut largest) = (0.0, 0.0_f64);
         for answer in &report.answers {
             let (value, unc) = expected[answer.id.as_str()];
             let z = (answer.value - value) / answer.stderr.hypot(unc);
             squares += z * z;
+            largest = largest.max((answer.value / value - 1.0).abs());
             assert!(z.abs() < 4.5, "{method:?}, {}: {} +- {}, must be {value}", answer.id, answer.value, answer.stderr);
         }
+        let percent = 100.0 * largest;
+        println!(
+            "{file}, {method:?}: chi-square {squares:.1} of {}, largest difference {percent:.1} %",
+            expected.len()
+        );
         assert!(squares < most, "{method:?}: chi-square {squares} of {}", expected.len());
     }
 }
