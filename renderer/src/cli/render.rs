@@ -101,6 +101,11 @@ impl Files {
         if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
             return Err(Failure::usage(format!("{}: there is no such folder to write to", folder.display())));
         }
+        // Better now than after the work.
+        let probe = exr.with_extension(format!("tmp-{}", std::process::id()));
+        std::fs::File::create(&probe)
+            .and_then(|_| std::fs::remove_file(&probe))
+            .map_err(|error| Failure::error(format!("{}: cannot be written: {error}", exr.display())))?;
         Ok(Self { exr: exr.into(), png: exr.with_extension("png") })
     }
 }
