@@ -1,7 +1,7 @@
 //! Free flights: from a vertex to the next one, in the air or on the ground.
 
 use super::Problem;
-use super::path::Carried;
+use super::carried::Carried;
 use super::ratio::{self, exponential};
 use crate::atmosphere::Local;
 use crate::geometry::{End, Ray, Segment};

@@ -11,6 +11,7 @@
 //! Miller, Georgiev & Jarosz 2019): unbiased at every wavelength, and finite
 //! wherever some wavelength would have drawn the path.
 
+mod carried;
 mod flight;
 mod path;
 mod ratio;
