@@ -318,20 +318,7 @@ impl Species {
     /// Vertical column of particles in m^-2: the integral of the number density, exact for its interpolation.
     #[must_use]
     pub fn column_m2(&self) -> f64 {
-        let curve = &self.number_density_m3;
-        let ends = curve.axis().nodes.windows(2).zip(curve.values().windows(2));
-        ends.map(|(z, n)| {
-            let mean = match (curve.axis().interpolation, curve.scale()) {
-                (Interpolation::Linear, Scale::Linear) => 0.5 * (n[0] + n[1]),
-                (Interpolation::Linear, Scale::Logarithmic) => {
-                    let rise = (n[1] / n[0]).ln();
-                    if rise == 0.0 { n[0] } else { n[0] * rise.exp_m1() / rise }
-                }
-                (Interpolation::Step | Interpolation::Node, _) => n[0],
-            };
-            (z[1] - z[0]) * mean
-        })
-        .sum()
+        self.number_density_m3.total()
     }
 
     /// Extinction and scattering cross-section per particle in m^2, their logarithms linear in humidity (percent)

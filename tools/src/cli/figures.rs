@@ -3,10 +3,10 @@
 use super::say;
 use clap::Args;
 use std::path::PathBuf;
-#[cfg(feature = "plot")]
-use tools::plot;
 #[cfg(feature = "study")]
 use tools::study;
+#[cfg(feature = "plot")]
+use tools::{data::Data, plot};
 
 /// What to draw, from which tables, to where.
 #[cfg(feature = "plot")]
@@ -46,7 +46,7 @@ pub(super) fn draw(args: &PlotArgs) -> Result<(), String> {
     let settings = plot::Settings { wavelength_nm: args.wavelength, month: args.month, latitude_deg: args.latitude };
     let wanted = |name: &plot::Name| args.figures.is_empty() || args.figures.iter().any(|f| f == name.as_str());
     for name in plot::Name::ALL.into_iter().filter(wanted) {
-        let made = plot::make(name, plot::Data(&args.data), &settings).map_err(|e| e.to_string())?;
+        let made = plot::make(name, Data(&args.data), &settings).map_err(|e| e.to_string())?;
         let paths = plot::write(&made, name.as_str(), &args.out).map_err(|e| e.to_string())?;
         if !args.quiet {
             let paths = paths.map(|path| path.display().to_string());

@@ -2,7 +2,8 @@
 
 use super::colours::{BLUE, GREEN, VERMILION};
 use super::model::{Axis, Curve, Figure, Key, Panel};
-use super::{Data, Plot, PlotError, against_km};
+use super::{Plot, PlotError, against_km};
+use crate::data::Data;
 use crate::frame::Frame;
 use tables::units::{KM, TOP_ALTITUDE_M};
 

@@ -2,16 +2,17 @@
 
 use super::colours::{BLACK, BLUE, GREEN, ORANGE, VERMILION};
 use super::model::{Axis, Curve, Figure, Key, Panel, Stroke};
-use super::{Data, Plot, PlotError, Settings, against_km, points};
+use super::{Plot, PlotError, Settings, against_km, points};
+use crate::column::{Column, Place, Species};
+use crate::data::Data;
 use crate::frame::Frame;
-use crate::profile::ozone::trapezoidal;
+use tables::TableError;
 use tables::units::{TOP_ALTITUDE_M, WAVELENGTH_RANGE_NM};
-use tables::{TableError, views};
 
 /// Temperatures in K at which the cross-section of ozone is shown: warm, and the stratosphere's.
 const TEMPERATURES_K: [f64; 2] = [293.0, 223.0];
 
-/// Step in m of the altitudes at which coefficients are computed and integrated.
+/// Step in m of the altitudes at which coefficients are shown.
 const STEP_M: u32 = 100;
 
 /// Whole wavelengths in nm from one end of the tables to the other.
@@ -48,57 +49,32 @@ pub(super) fn cross_sections(data: Data<'_>) -> Result<Plot, PlotError> {
     Ok(Plot { figure: Figure { title, rows: vec![vec![panel]] }, frame })
 }
 
-/// Air and ozone of one month and latitude.
-struct Column {
-    air: views::StandardAtmosphere,
-    ozone: views::OzoneProfile,
-    rayleigh: views::Rayleigh,
-    absorption: views::OzoneCrossSection,
-    /// m.
-    altitudes: Vec<f64>,
+/// Altitudes in m from the ground to the top.
+fn altitudes() -> Vec<f64> {
+    (0..=TOP_ALTITUDE_M as u32 / STEP_M).map(|i| f64::from(i * STEP_M)).collect()
 }
 
-impl Column {
-    fn new(data: Data<'_>, settings: &Settings) -> Result<Self, TableError> {
-        Ok(Self {
-            air: data.air()?,
-            ozone: data.ozone_profiles()?.profile(settings.month, settings.latitude_deg)?,
-            rayleigh: data.rayleigh()?,
-            absorption: data.ozone_cross_section()?,
-            altitudes: (0..=TOP_ALTITUDE_M as u32 / STEP_M).map(|i| f64::from(i * STEP_M)).collect(),
-        })
-    }
-
-    /// Molecular scattering coefficient N(z) sigma(lambda) in m^-1 at each altitude.
-    fn scattering(&self, wavelength_nm: f64) -> Result<Vec<f64>, TableError> {
-        let sigma = self.rayleigh.cross_section_m2.at(wavelength_nm)?;
-        self.altitudes.iter().map(|&z| Ok(self.air.number_density_m3.at(z)? * sigma)).collect()
-    }
-
-    /// Ozone absorption coefficient N_O3(z) sigma(lambda, T(z)) in m^-1 at each altitude.
-    fn absorption(&self, wavelength_nm: f64) -> Result<Vec<f64>, TableError> {
-        let at = |z: f64| -> Result<f64, TableError> {
-            let kelvin = self.air.temperature_k.at(z)?;
-            let sigma = self.absorption.cross_section_m2(wavelength_nm, kelvin)?;
-            Ok(self.ozone.number_density_m3.at(z)? * sigma)
-        };
-        self.altitudes.iter().map(|&z| at(z)).collect()
-    }
+fn column(data: Data<'_>, settings: &Settings) -> Result<Column, TableError> {
+    let place = Place { month: settings.month, latitude_deg: settings.latitude_deg, ..Place::default() };
+    Column::read(data, &place)
 }
 
 /// Scattering, absorption and extinction coefficients against altitude at one wavelength.
 pub(super) fn against_altitude(data: Data<'_>, settings: &Settings) -> Result<Plot, PlotError> {
-    let column = Column::new(data, settings)?;
+    let (column, z) = (column(data, settings)?, altitudes());
+    let at = |species: Species| -> Result<Vec<f64>, TableError> {
+        let value = |&z| Ok(column.coefficients(species, settings.wavelength_nm, z)?.extinction());
+        z.iter().map(value).collect()
+    };
     let species = [
-        ("scattering by molecules", "molecular_scattering_per_m", BLUE, column.scattering(settings.wavelength_nm)?),
-        ("absorption by ozone", "ozone_absorption_per_m", VERMILION, column.absorption(settings.wavelength_nm)?),
+        ("scattering by molecules", "molecular_scattering_per_m", BLUE, at(Species::Molecules)?),
+        ("absorption by ozone", "ozone_absorption_per_m", VERMILION, at(Species::Ozone)?),
     ];
-    let z = &column.altitudes;
     let extinction = sums(species.iter().map(|(_, _, _, values)| values), z.len());
-    let mut curves = vec![Curve::new("extinction", BLACK, against_km(&extinction, z)).stroke(Stroke::Dashed)];
+    let mut curves = vec![Curve::new("extinction", BLACK, against_km(&extinction, &z)).stroke(Stroke::Dashed)];
     let mut columns = vec![("altitude_m", z.clone())];
     for (name, column, colour, values) in species {
-        curves.insert(curves.len() - 1, Curve::new(name, colour, against_km(&values, z)));
+        curves.insert(curves.len() - 1, Curve::new(name, colour, against_km(&values, &z)));
         columns.push((column, values));
     }
     columns.push(("extinction_per_m", extinction));
@@ -115,12 +91,13 @@ pub(super) fn against_altitude(data: Data<'_>, settings: &Settings) -> Result<Pl
 
 /// Vertical optical depth against wavelength.
 pub(super) fn optical_depth(data: Data<'_>, settings: &Settings) -> Result<Plot, PlotError> {
-    let column = Column::new(data, settings)?;
+    let column = column(data, settings)?;
     let nm = wavelengths();
-    // Steps of 100 m overestimate an exponential of 7 km by 2e-5.
-    let depth = |values: Result<Vec<f64>, TableError>| Ok(trapezoidal(&column.altitudes, &values?));
-    let molecules: Vec<f64> = nm.iter().map(|&w| depth(column.scattering(w))).collect::<Result<_, TableError>>()?;
-    let ozone: Vec<f64> = nm.iter().map(|&w| depth(column.absorption(w))).collect::<Result<_, TableError>>()?;
+    let depths = |species: Species| -> Result<Vec<f64>, TableError> {
+        let value = |&w| Ok(column.optical_depth(species, w, (0.0, TOP_ALTITUDE_M))?.extinction());
+        nm.iter().map(value).collect()
+    };
+    let (molecules, ozone) = (depths(Species::Molecules)?, depths(Species::Ozone)?);
     let total = sums([&molecules, &ozone], nm.len());
     let transmittance: Vec<f64> = total.iter().map(|depth| (-depth).exp()).collect();
     let panel = Panel::new(
@@ -138,7 +115,7 @@ pub(super) fn optical_depth(data: Data<'_>, settings: &Settings) -> Result<Plot,
         vec![Curve::new("", GREEN, points(&nm, &transmittance))],
     )
     .key(Key::None);
-    let title = format!("From the ground to 120 km, {}, {:.0} DU of ozone", settings.place(), column.ozone.column_du);
+    let title = format!("From the ground to 120 km, {}, {:.0} DU of ozone", settings.place(), column.ozone_du());
     let frame = Frame::new([
         ("wavelength_nm", nm),
         ("molecular_scattering", molecules),

@@ -2,7 +2,8 @@
 
 use super::colours::{ORANGE, viridis};
 use super::model::{Axis, Curve, Figure, Key, Panel};
-use super::{Data, Plot, PlotError, points};
+use super::{Plot, PlotError, points};
+use crate::data::Data;
 use crate::frame::Frame;
 use tables::TableError;
 use tables::units::WAVELENGTH_RANGE_NM;

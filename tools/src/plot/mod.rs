@@ -16,11 +16,12 @@ mod text;
 
 pub use picture::{png, svg};
 
+use crate::data::Data;
 use crate::frame::Frame;
 use model::Figure;
 use polars::prelude::PolarsError;
 use std::path::{Path, PathBuf};
-use tables::{Kind, Table, TableError, views};
+use tables::TableError;
 
 /// Why a figure could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -178,37 +179,6 @@ const MONTHS: [&str; 12] = [
 fn latitude(degrees: f64) -> String {
     let side = if degrees < 0.0 { " S" } else { " N" };
     format!("{}°{}", degrees.abs(), if degrees == 0.0 { "" } else { side })
-}
-
-/// The tables of a folder.
-#[derive(Debug, Clone, Copy)]
-pub struct Data<'a>(pub &'a Path);
-
-impl Data<'_> {
-    fn read<V>(self, kind: Kind, view: fn(&Table) -> Result<V, TableError>) -> Result<V, TableError> {
-        let path = self.0.join(kind.file_name());
-        view(&tables::file::read(&path)?).map_err(|e| e.at(&path))
-    }
-
-    fn air(self) -> Result<views::StandardAtmosphere, TableError> {
-        self.read(Kind::StandardAtmosphere, views::StandardAtmosphere::from_table)
-    }
-
-    fn rayleigh(self) -> Result<views::Rayleigh, TableError> {
-        self.read(Kind::Rayleigh, views::Rayleigh::from_table)
-    }
-
-    fn ozone_cross_section(self) -> Result<views::OzoneCrossSection, TableError> {
-        self.read(Kind::OzoneCrossSection, views::OzoneCrossSection::from_table)
-    }
-
-    fn ozone_profiles(self) -> Result<views::OzoneProfiles, TableError> {
-        self.read(Kind::OzoneProfiles, views::OzoneProfiles::from_table)
-    }
-
-    fn sun(self) -> Result<views::Sun, TableError> {
-        self.read(Kind::Sun, views::Sun::from_table)
-    }
 }
 
 /// Makes a figure from the tables of a folder.

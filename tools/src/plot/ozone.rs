@@ -2,7 +2,8 @@
 
 use super::colours;
 use super::model::{Axis, Cells, Curve, Figure, Key, Panel};
-use super::{Data, MONTHS, Plot, PlotError, Settings, against_km, latitude};
+use super::{MONTHS, Plot, PlotError, Settings, against_km, latitude};
+use crate::data::Data;
 use crate::frame::Frame;
 
 /// Altitude in km above which there is too little ozone to show.
