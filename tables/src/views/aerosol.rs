@@ -1,7 +1,7 @@
 //! Aerosol: what there is in each biome, how much of it where, and how it scatters and absorbs.
 
 use super::{WAVELENGTH, bounded, scalar};
-use crate::{Axis, Curve, Field, Interpolation, Kind, Outside, Scale, Table, TableError};
+use crate::{Axis, Curve, Field, Interpolation, Kind, Outside, Table, TableError};
 use std::fmt;
 
 /// The axis of the cosine of the scattering angle, from -1 (backward) to 1 (forward).
