@@ -2,7 +2,7 @@
 
 use super::AerosolError;
 use super::size::LogNormal;
-use crate::mie::{AngularTable, RefractiveIndex, SIZE_PARAMETERS, Solver, Sums, sum};
+use crate::mie::{AngularTable, RefractiveIndex, SIZE_PARAMETERS, Spheres, Sums};
 use std::f64::consts::PI;
 
 /// How finely sizes are resolved: nested trapezoidal rules in ln r, each with twice the intervals of the one
@@ -64,7 +64,7 @@ pub fn average(
     wavelength: f64,
     angles: &AngularTable,
     rule: &Rule,
-    solver: &mut Solver,
+    solver: &mut Spheres,
 ) -> Result<Bulk, AerosolError> {
     let wave_number = 2.0 * PI / wavelength;
     let (low, high) = sizes.limits();
@@ -76,7 +76,7 @@ pub fn average(
             let end = if i == 0 || i == intervals { 0.5 } else { 1.0 };
             (wave_number * ln_r.exp(), end * sizes.density(ln_r))
         });
-        Ok(sum(m, spheres, angles, solver)?)
+        Ok(solver.sum(m, spheres, angles)?)
     };
     let mut intervals = rule.first;
     // The sums without the factor h of the rule.
@@ -101,7 +101,7 @@ pub fn average(
                 scattering: scale * total.scattering,
                 absorption: scale * total.absorption,
                 asymmetry: total.forward / total.scattering,
-                differential: total.intensity.iter().map(|i| scale * i).collect(),
+                differential: total.intensity().iter().map(|i| scale * i).collect(),
                 error: QuadratureError { cross_sections: error.optics, misplaced: error.misplaced, phase: error.phase },
             });
         }
@@ -131,7 +131,7 @@ impl Changes {
 /// Compares the sums of a rule with those of twice the intervals, both without their factor h.
 fn changes(coarse: &Sums, fine: &Sums, cosines: &[f64]) -> Changes {
     let relative = |coarse: f64, fine: f64| if fine == 0.0 { 0.0 } else { (2.0 * coarse / fine - 1.0).abs() };
-    let pairs = || coarse.intensity.iter().zip(&fine.intensity);
+    let pairs = || coarse.intensity().iter().zip(fine.intensity());
     let moved: Vec<f64> = pairs().map(|(a, b)| (a / coarse.scattering - b / fine.scattering).abs()).collect();
     Changes {
         optics: relative(coarse.extinction, fine.extinction).max(relative(coarse.scattering, fine.scattering)),

@@ -4,7 +4,7 @@ use super::AerosolError;
 use super::bulk::{Bulk, Rule, average};
 use super::material::index;
 use super::recipe::Particles;
-use crate::mie::{AngularTable, Solver, terms};
+use crate::mie::{AngularTable, Spheres, terms};
 use crate::raw::aerosol_opac::AerosolOpac;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -43,7 +43,7 @@ impl Library {
             (0..distinct.len()).flat_map(|p| (0..wavelengths_nm.len()).map(move |w| (p, w))).collect();
         let done: Vec<Result<Bulk, AerosolError>> = jobs
             .par_iter()
-            .map_init(Solver::new, |solver, &(p, w)| {
+            .map_init(Spheres::new, |solver, &(p, w)| {
                 let (particles, wavelength_nm) = (&distinct[p], wavelengths_nm[w]);
                 let m = index(opac, &particles.material, particles.humidity_percent, wavelength_nm)?;
                 average(m, &particles.sizes, wavelength_nm * 1e-9, &angles, rule, solver)

@@ -1,9 +1,13 @@
 //! The angular functions pi_n = P_n^1(mu) / sin(theta) and tau_n = d P_n^1(mu) / d theta, mu = cos(theta).
 
 use super::MieError;
+use pulp::Simd;
 
-/// Orders that are summed at once.
-pub(super) const RUN: usize = 4;
+/// Angles of one block of a table: a whole number of tiles of every instruction set.
+const WIDTH: usize = 24;
+
+/// Vectors of angles in a tile of the sums over orders, whose accumulators all fit into registers.
+const VECTORS: usize = 3;
 
 /// pi_n and tau_n at one angle, n = 1, 2, 3, ... in turn.
 ///
@@ -52,7 +56,7 @@ impl Functions {
 pub struct AngularTable {
     cosines: Vec<f64>,
     terms: usize,
-    /// pi_n + tau_n at all angles, for each order, up to a whole number of runs.
+    /// pi_n + tau_n: of [`WIDTH`] angles after the other, for each order n = 1, 2, ... in turn those of the block.
     plus: Vec<f64>,
     /// pi_n - tau_n, the same.
     minus: Vec<f64>,
@@ -64,14 +68,15 @@ impl AngularTable {
     /// # Errors
     /// [`MieError::Cosine`] for a cosine outside -1..=1.
     pub fn new(cosines: &[f64], terms: usize) -> Result<Self, MieError> {
-        let mut functions = cosines.iter().map(|&c| Functions::new(c)).collect::<Result<Vec<_>, _>>()?;
-        let length = terms.next_multiple_of(RUN) * cosines.len();
-        let (mut plus, mut minus) = (Vec::with_capacity(length), Vec::with_capacity(length));
-        for _ in 0..terms.next_multiple_of(RUN) {
-            for functions in &mut functions {
+        let length = cosines.len().next_multiple_of(WIDTH) * terms;
+        let (mut plus, mut minus) = (vec![0.0; length], vec![0.0; length]);
+        for (i, &cosine) in cosines.iter().enumerate() {
+            let mut functions = Functions::new(cosine)?;
+            let first = i / WIDTH * WIDTH * terms + i % WIDTH;
+            for n in 0..terms {
                 let (pi, tau) = functions.advance();
-                plus.push(pi + tau);
-                minus.push(pi - tau);
+                plus[first + n * WIDTH] = pi + tau;
+                minus[first + n * WIDTH] = pi - tau;
             }
         }
         Ok(Self { cosines: cosines.to_vec(), terms, plus, minus })
@@ -88,12 +93,120 @@ impl AngularTable {
     pub fn terms(&self) -> usize {
         self.terms
     }
+}
 
-    /// pi_n + tau_n and pi_n - tau_n of one run of orders after the other, each order's angles in a row.
-    pub(super) fn runs(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
-        let length = (RUN * self.cosines.len()).max(1);
-        self.plus.chunks_exact(length).zip(self.minus.chunks_exact(length))
+/// The scattering matrix summed over spheres, at each angle of a table and some more that fill up its last block:
+/// with S+ = S1 + S2 and S- = S1 - S2,
+///
+/// (|S1|^2 + |S2|^2) / 2 = (|S+|^2 + |S-|^2) / 4, (|S2|^2 - |S1|^2) / 2 = -Re(S+ S-*) / 2,
+/// Re(S1 S2*) = (|S+|^2 - |S-|^2) / 4, Im(S2 S1*) = Im(S+ S-*) / 2.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Matrix {
+    /// sum w |S+|^2, w |S-|^2, w Re(S+ S-*), w Im(S+ S-*).
+    parts: [Vec<f64>; 4],
+}
+
+impl Matrix {
+    /// Nothing summed yet.
+    pub(super) fn clear(&mut self, table: &AngularTable) {
+        for part in &mut self.parts {
+            part.clear();
+            part.resize(table.cosines.len().next_multiple_of(WIDTH), 0.0);
+        }
     }
+
+    /// The four elements in the order above, of `angles` angles.
+    pub(super) fn elements(&self, angles: usize) -> [Vec<f64>; 4] {
+        let [plus, minus, re, im] = &self.parts;
+        let pairs = || plus.iter().zip(minus).take(angles);
+        [
+            pairs().map(|(p, m)| 0.25 * (p + m)).collect(),
+            re.iter().take(angles).map(|r| -0.5 * r).collect(),
+            pairs().map(|(p, m)| 0.25 * (p - m)).collect(),
+            im.iter().take(angles).map(|i| 0.5 * i).collect(),
+        ]
+    }
+
+    /// Adds the spheres of one vector with their weights. `plus` and `minus` hold, for n = 1, 2, ... `count`, the real
+    /// parts of (2n + 1) / (n (n + 1)) (a_n + b_n), or of a_n - b_n, in all lanes, then the imaginary parts.
+    #[inline(always)]
+    pub(super) fn add<S: Simd>(
+        &mut self,
+        simd: S,
+        table: &AngularTable,
+        (plus, minus): (&[f64], &[f64]),
+        count: usize,
+        weights: &[f64],
+    ) {
+        match S::F64_LANES {
+            8 => self.add_by::<S, 4>(simd, table, (plus, minus), count, weights),
+            1 => self.add_by::<S, 1>(simd, table, (plus, minus), count, weights),
+            _ => self.add_by::<S, 2>(simd, table, (plus, minus), count, weights),
+        }
+    }
+
+    /// As [`Matrix::add`], so many spheres to a tile.
+    #[inline(always)]
+    fn add_by<S: Simd, const SPHERES: usize>(
+        &mut self,
+        simd: S,
+        table: &AngularTable,
+        (plus, minus): (&[f64], &[f64]),
+        count: usize,
+        weights: &[f64],
+    ) {
+        let lanes = S::F64_LANES;
+        let tile = VECTORS * lanes;
+        let block = WIDTH * table.terms;
+        for first in (0..self.parts[0].len()).step_by(tile) {
+            let start = first / WIDTH * block + first % WIDTH;
+            for sphere in (0..lanes.min(weights.len())).step_by(SPHERES) {
+                let ahead = sums::<S, SPHERES>(simd, &table.plus[start..], &plus[sphere..], count);
+                let back = sums::<S, SPHERES>(simd, &table.minus[start..], &minus[sphere..], count);
+                for (i, &weight) in weights[sphere..].iter().enumerate().take(SPHERES) {
+                    let weight = simd.splat_f64s(weight);
+                    for v in 0..VECTORS {
+                        let ([p, q], [r, s]) = (ahead[i][v], back[i][v]);
+                        let products = [
+                            simd.mul_add_e_f64s(p, p, simd.mul_f64s(q, q)),
+                            simd.mul_add_e_f64s(r, r, simd.mul_f64s(s, s)),
+                            simd.mul_add_e_f64s(p, r, simd.mul_f64s(q, s)),
+                            simd.sub_f64s(simd.mul_f64s(q, r), simd.mul_f64s(p, s)),
+                        ];
+                        for (part, product) in self.parts.iter_mut().zip(products) {
+                            let part = &mut S::as_mut_simd_f64s(&mut part[first..]).0[v];
+                            *part = simd.mul_add_e_f64s(weight, product, *part);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The sums over n = 1 ..= `count` of functions times coefficients, for `SPHERES` spheres and a tile of angles: of each
+/// sphere and vector of angles the real and the imaginary part.
+#[inline(always)]
+fn sums<S: Simd, const SPHERES: usize>(
+    simd: S,
+    functions: &[f64],
+    coefficients: &[f64],
+    count: usize,
+) -> [[[S::f64s; 2]; VECTORS]; SPHERES] {
+    let lanes = S::F64_LANES;
+    let mut sums = [[[simd.splat_f64s(0.0); 2]; VECTORS]; SPHERES];
+    for (row, both) in functions.chunks(WIDTH).zip(coefficients.chunks(2 * lanes)).take(count) {
+        let (row, _) = S::as_simd_f64s(&row[..VECTORS * lanes]);
+        let (re, im) = (&both[..SPHERES], &both[lanes..lanes + SPHERES]);
+        for i in 0..SPHERES {
+            let (re, im) = (simd.splat_f64s(re[i]), simd.splat_f64s(im[i]));
+            for v in 0..VECTORS {
+                sums[i][v][0] = simd.mul_add_e_f64s(re, row[v], sums[i][v][0]);
+                sums[i][v][1] = simd.mul_add_e_f64s(im, row[v], sums[i][v][1]);
+            }
+        }
+    }
+    sums
 }
 
 #[cfg(test)]

@@ -1,13 +1,16 @@
-//! A weighted sum over many spheres of one refractive index.
+//! Many spheres of one refractive index: their efficiencies, and weighted sums over them.
 
-use super::angular::RUN;
-use super::{AngularTable, MieError, RefractiveIndex, Solver};
-use num_complex::Complex64;
+use super::angular::Matrix;
+use super::lanes::{self, INTERLEAVED, LANES, Orders, Scratch};
+use super::sphere::is_matched;
+use super::{AngularTable, Efficiencies, Instructions, LARGEST_INSIDE, MieError, RefractiveIndex, SIZE_PARAMETERS};
+use super::{Solver, instructions, terms};
+use pulp::{Simd, WithSimd};
 use std::f64::consts::PI;
 
-/// Spheres whose amplitudes are summed together, so that each run of angular functions is fetched once for
-/// all of them.
-const BATCH: usize = 8;
+/// Size parameter up to which spheres are solved in vectors; larger ones need more than the precision of a double
+/// in places and are solved one by one, as are those of nearly the index of their surroundings.
+pub const VECTORS_UP_TO: f64 = 2000.0;
 
 /// Sums over spheres i with weights w_i. Cross-sections are in units of the square of the wave number's
 /// inverse: multiply by (lambda / 2 pi)^2 for m^2.
@@ -21,15 +24,26 @@ pub struct Sums {
     pub absorption: f64,
     /// sum w_i pi x_i^2 Qsca g.
     pub forward: f64,
-    /// sum w_i (|S1|^2 + |S2|^2) / 2 at each angle. Its integral over the sphere is `scattering`.
-    pub intensity: Vec<f64>,
+    /// sum w_i pi x_i^2 Qback.
+    pub backscatter: f64,
+    /// Elements of the scattering matrix at each angle (Bohren & Huffman 1983, equation 4.77): sum w_i times
+    /// S11 = (|S1|^2 + |S2|^2) / 2, whose integral over the sphere is `scattering`, S12 = (|S2|^2 - |S1|^2) / 2,
+    /// S33 = Re(S1 S2*), S34 = Im(S2 S1*).
+    pub matrix: [Vec<f64>; 4],
 }
 
 impl Sums {
     /// Nothing summed yet, at `angles` angles.
     #[must_use]
     pub fn zero(angles: usize) -> Self {
-        Self { extinction: 0.0, scattering: 0.0, absorption: 0.0, forward: 0.0, intensity: vec![0.0; angles] }
+        let matrix = std::array::from_fn(|_| vec![0.0; angles]);
+        Self { extinction: 0.0, scattering: 0.0, absorption: 0.0, forward: 0.0, backscatter: 0.0, matrix }
+    }
+
+    /// S11 at each angle: the scattered intensity for natural light.
+    #[must_use]
+    pub fn intensity(&self) -> &[f64] {
+        &self.matrix[0]
     }
 
     /// Adds `factor` times `other`, which has as many angles (further ones are left out).
@@ -38,120 +52,240 @@ impl Sums {
         self.scattering += factor * other.scattering;
         self.absorption += factor * other.absorption;
         self.forward += factor * other.forward;
-        for (sum, term) in self.intensity.iter_mut().zip(&other.intensity) {
+        self.backscatter += factor * other.backscatter;
+        for (sum, term) in self.matrix.iter_mut().flatten().zip(other.matrix.iter().flatten()) {
             *sum += factor * term;
         }
     }
-}
 
-/// Sums over spheres of index `m` given as (size parameter, weight). With a table of no angles only the
-/// efficiencies are computed. After the largest sphere nothing is allocated but the result.
-///
-/// # Errors
-/// [`MieError`] of the first sphere that cannot be solved, or [`MieError::Terms`] if the table is too small.
-pub fn sum(
-    m: RefractiveIndex,
-    spheres: impl IntoIterator<Item = (f64, f64)>,
-    angles: &AngularTable,
-    solver: &mut Solver,
-) -> Result<Sums, MieError> {
-    let mut sums = Sums::zero(angles.cosines().len());
-    let mut batch: Vec<Scaled> = Vec::new();
-    let mut filled = 0;
-    for (x, weight) in spheres {
-        let sphere = solver.sphere(m, x)?;
-        let q = sphere.efficiencies();
+    fn add_sphere(&mut self, x: f64, weight: f64, q: &Efficiencies) {
         let area = weight * PI * x * x;
-        sums.extinction += area * q.extinction;
-        sums.scattering += area * q.scattering;
-        sums.absorption += area * q.absorption;
+        self.extinction += area * q.extinction;
+        self.scattering += area * q.scattering;
+        self.absorption += area * q.absorption;
+        self.backscatter += area * q.backscatter;
         if q.scattering > 0.0 {
-            sums.forward += area * q.scattering * q.asymmetry;
-        }
-        if angles.cosines().is_empty() {
-            continue;
-        }
-        let needed = sphere.a().len();
-        if needed > angles.terms() {
-            return Err(MieError::Terms { needed, available: angles.terms() });
-        }
-        if filled == batch.len() {
-            batch.push(Scaled::default());
-        }
-        batch[filled].weight = weight;
-        batch[filled].fill(sphere.a().iter().zip(sphere.b()), angles.cosines().len());
-        filled += 1;
-        if filled == BATCH {
-            add_intensities(&mut batch, angles, &mut sums.intensity);
-            filled = 0;
+            self.forward += area * q.scattering * q.asymmetry;
         }
     }
-    add_intensities(&mut batch[..filled], angles, &mut sums.intensity);
-    Ok(sums)
 }
 
-/// A sphere whose amplitudes are being summed.
-#[derive(Default)]
-struct Scaled {
-    weight: f64,
-    /// Real and imaginary parts of (2n + 1) / (n (n + 1)) (a_n + b_n), then of the same with a_n - b_n; in runs,
-    /// the last filled up with zeros.
-    coefficients: Vec<[f64; 4]>,
-    /// Real and imaginary part of S+ and of S- at each angle.
-    amplitudes: [Vec<f64>; 4],
+/// Solves many spheres of one index at a time, as many at once as the instruction set has lanes, and keeps its
+/// memory. Up to [`VECTORS_UP_TO`] the results of the instruction sets differ in their last digits; beyond, and for
+/// an index near 1, all take the way of [`Solver`].
+#[derive(Debug, Clone)]
+pub struct Spheres {
+    instructions: Instructions,
+    single: Solver,
+    orders: Orders,
+    scratch: Scratch,
+    matrix: Matrix,
+    /// Sizes in rising order with their place in what was asked.
+    sorted: Vec<(f64, usize)>,
+    sizes: Vec<f64>,
+    weights: Vec<f64>,
+    solved: Vec<Efficiencies>,
 }
 
-impl Scaled {
-    fn fill<'a>(&mut self, ab: impl Iterator<Item = (&'a Complex64, &'a Complex64)>, angles: usize) {
-        self.coefficients.clear();
-        self.coefficients.extend(ab.enumerate().map(|(i, (a, b))| {
-            let n = (i + 1) as f64;
-            let weight = (2.0 * n + 1.0) / (n * (n + 1.0));
-            let (sum, difference) = ((a + b) * weight, (a - b) * weight);
-            [sum.re, sum.im, difference.re, difference.im]
+impl Default for Spheres {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Spheres {
+    /// Solves with the best instruction set of this processor.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::with(Instructions::best())
+    }
+
+    /// Solves with a given instruction set, which must be one of [`Instructions::available`]; the plain one is taken
+    /// for another.
+    #[must_use]
+    pub fn with(instructions: Instructions) -> Self {
+        Self {
+            instructions,
+            single: Solver::new(),
+            orders: Orders::default(),
+            scratch: Scratch::default(),
+            matrix: Matrix::default(),
+            sorted: Vec::new(),
+            sizes: Vec::new(),
+            weights: Vec::new(),
+            solved: Vec::new(),
+        }
+    }
+
+    /// Efficiencies of spheres of index `m` and size parameters `x`, in their order.
+    ///
+    /// # Errors
+    /// [`MieError`] of the first sphere that is out of range.
+    pub fn efficiencies(&mut self, m: RefractiveIndex, x: &[f64]) -> Result<Vec<Efficiencies>, MieError> {
+        let none = AngularTable::new(&[], 0)?;
+        self.solve(m, x.iter().map(|&x| (x, 0.0)), &none)?;
+        let mut result = vec![Efficiencies::NOTHING; x.len()];
+        for (&(_, i), q) in self.sorted.iter().zip(&self.solved) {
+            result[i] = *q;
+        }
+        Ok(result)
+    }
+
+    /// Sums over spheres of index `m` given as (size parameter, weight). With a table of no angles only the
+    /// efficiencies are computed. After the largest sphere nothing is allocated but the result.
+    ///
+    /// # Errors
+    /// [`MieError`] of the first sphere that is out of range, or [`MieError::Terms`] if the table is too small.
+    pub fn sum(
+        &mut self,
+        m: RefractiveIndex,
+        spheres: impl IntoIterator<Item = (f64, f64)>,
+        angles: &AngularTable,
+    ) -> Result<Sums, MieError> {
+        self.solve(m, spheres, angles)?;
+        let count = angles.cosines().len();
+        let mut sums = Sums::zero(0);
+        for ((&(x, _), &weight), q) in self.sorted.iter().zip(&self.weights).zip(&self.solved) {
+            sums.add_sphere(x, weight, q);
+        }
+        sums.matrix = self.matrix.elements(count);
+        Ok(sums)
+    }
+
+    /// Fills `sorted`, `weights` and `solved`, and `matrix` at the angles.
+    fn solve(
+        &mut self,
+        m: RefractiveIndex,
+        spheres: impl IntoIterator<Item = (f64, f64)>,
+        angles: &AngularTable,
+    ) -> Result<(), MieError> {
+        self.sorted.clear();
+        self.sizes.clear();
+        self.sizes.extend(spheres.into_iter().enumerate().map(|(i, (x, weight))| {
+            self.sorted.push((x, i));
+            weight
         }));
-        self.coefficients.resize(self.coefficients.len().next_multiple_of(RUN), [0.0; 4]);
-        for part in &mut self.amplitudes {
-            part.clear();
-            part.resize(angles, 0.0);
-        }
-    }
-}
-
-/// With S+ = S1 + S2 = sum (a + b)(pi + tau) and S- = S1 - S2 = sum (a - b)(pi - tau), each times
-/// (2n + 1) / (n (n + 1)): (|S1|^2 + |S2|^2) / 2 = (|S+|^2 + |S-|^2) / 4.
-fn add_intensities(spheres: &mut [Scaled], angles: &AngularTable, intensity: &mut [f64]) {
-    let longest = spheres.iter().map(|sphere| sphere.coefficients.len() / RUN).max().unwrap_or(0);
-    for (run, (plus, minus)) in angles.runs().take(longest).enumerate() {
-        for Scaled { coefficients, amplitudes, .. } in spheres.iter_mut() {
-            let Some(c) = coefficients.get(run * RUN..(run + 1) * RUN) else { continue };
-            let of = |part: usize| std::array::from_fn(|order| c[order][part]);
-            let [plus_re, plus_im, minus_re, minus_im] = amplitudes;
-            add_run(plus_re, plus_im, plus, of(0), of(1));
-            add_run(minus_re, minus_im, minus, of(2), of(3));
-        }
-    }
-    for Scaled { weight, amplitudes, .. } in spheres {
-        for part in amplitudes {
-            for (sum, value) in intensity.iter_mut().zip(part) {
-                *sum += 0.25 * *weight * *value * *value;
+        let inside = m.to_complex().norm();
+        for &(x, _) in &self.sorted {
+            if !(SIZE_PARAMETERS.0..=SIZE_PARAMETERS.1).contains(&x) {
+                return Err(MieError::Size { x });
+            }
+            if inside * x > LARGEST_INSIDE {
+                return Err(MieError::Inside { mx: inside * x });
             }
         }
+        self.sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.weights.clear();
+        self.weights.extend(self.sorted.iter().map(|&(_, i)| self.sizes[i]));
+        self.sizes.clear();
+        self.sizes.extend(self.sorted.iter().map(|&(x, _)| x));
+        self.solved.clear();
+        self.matrix.clear(angles);
+        let Some(&largest) = self.sizes.last() else { return Ok(()) };
+        if !angles.cosines().is_empty() && terms(largest) > angles.terms() {
+            return Err(MieError::Terms { needed: terms(largest), available: angles.terms() });
+        }
+        let matched = self.sizes.partition_point(|&x| m.is_one() || is_matched(m, x));
+        let vectors = self.sizes.partition_point(|&x| x <= VECTORS_UP_TO).max(matched);
+        self.one_by_one(m, 0..matched, angles)?;
+        if matched < vectors {
+            self.orders.reach(terms(self.sizes[vectors - 1]) + 1);
+            instructions::run(
+                self.instructions,
+                Job {
+                    m,
+                    sizes: &self.sizes[matched..vectors],
+                    weights: &self.weights[matched..vectors],
+                    angles,
+                    orders: &self.orders,
+                    scratch: &mut self.scratch,
+                    solved: &mut self.solved,
+                    matrix: &mut self.matrix,
+                },
+            );
+        }
+        self.one_by_one(m, vectors..self.sizes.len(), angles)
+    }
+
+    fn one_by_one(
+        &mut self,
+        m: RefractiveIndex,
+        spheres: std::ops::Range<usize>,
+        angles: &AngularTable,
+    ) -> Result<(), MieError> {
+        for (&x, weight) in self.sizes[spheres.clone()].iter().zip(&self.weights[spheres]) {
+            let sphere = self.single.sphere(m, x)?;
+            self.solved.push(sphere.efficiencies());
+            if angles.cosines().is_empty() {
+                continue;
+            }
+            let (plus, minus) = (&mut self.scratch.plus[0], &mut self.scratch.minus[0]);
+            plus.clear();
+            minus.clear();
+            for (i, (a, b)) in sphere.a().iter().zip(sphere.b()).enumerate() {
+                let n = (i + 1) as f64;
+                let factor = (2.0 * n + 1.0) / (n * (n + 1.0));
+                let (sum, difference) = ((a + b) * factor, (a - b) * factor);
+                plus.extend([sum.re, sum.im]);
+                minus.extend([difference.re, difference.im]);
+            }
+            self.matrix.add(pulp::Scalar, angles, (plus, minus), sphere.a().len(), &[*weight]);
+        }
+        Ok(())
     }
 }
 
-/// Adds to `re` and `im`, at each angle, the functions of one run of orders times their coefficients. Slices of one
-/// length and a plain loop: this is what compilers turn into vector instructions.
-#[inline(never)]
-fn add_run(re: &mut [f64], im: &mut [f64], functions: &[f64], real: [f64; RUN], imaginary: [f64; RUN]) {
-    let angles = re.len();
-    let im = &mut im[..angles];
-    let (f0, rest) = functions.split_at(angles);
-    let (f1, rest) = rest.split_at(angles);
-    let (f2, f3) = rest.split_at(angles);
-    let f3 = &f3[..angles];
-    for j in 0..angles {
-        re[j] += (real[0] * f0[j] + real[1] * f1[j]) + (real[2] * f2[j] + real[3] * f3[j]);
-        im[j] += (imaginary[0] * f0[j] + imaginary[1] * f1[j]) + (imaginary[2] * f2[j] + imaginary[3] * f3[j]);
+/// Spheres in rising order that are solved in vectors.
+struct Job<'a> {
+    m: RefractiveIndex,
+    sizes: &'a [f64],
+    weights: &'a [f64],
+    angles: &'a AngularTable,
+    orders: &'a Orders,
+    scratch: &'a mut Scratch,
+    solved: &'a mut Vec<Efficiencies>,
+    matrix: &'a mut Matrix,
+}
+
+impl Job<'_> {
+    /// The spheres `from` on, up to `VECTORS` vectors of them; gives how many.
+    #[inline(always)]
+    fn group<S: Simd, const VECTORS: usize>(&mut self, simd: S, from: usize) -> usize {
+        let lanes = S::F64_LANES;
+        let group = from..self.sizes.len().min(from + VECTORS * lanes);
+        let keep = !self.angles.cosines().is_empty();
+        let sizes = &self.sizes[group.clone()];
+        let done = lanes::solve::<S, VECTORS>(simd, self.m, sizes, self.orders, self.scratch, keep);
+        for (v, (count, totals)) in done.iter().enumerate() {
+            let here = (v * lanes).min(sizes.len())..((v + 1) * lanes).min(sizes.len());
+            for (lane, &x) in sizes[here.clone()].iter().enumerate() {
+                let back = [totals.back[0][lane], totals.back[1][lane]];
+                let (scattering, absorption) = (totals.scattering[lane], totals.absorption[lane]);
+                self.solved.push(Efficiencies::from_sums(x, scattering, absorption, totals.cosine[lane], back));
+            }
+            if keep && !here.is_empty() {
+                let mut weights = [0.0; LANES];
+                weights[..here.len()].copy_from_slice(&self.weights[from..][here]);
+                let coefficients = (self.scratch.plus[v].as_slice(), self.scratch.minus[v].as_slice());
+                self.matrix.add(simd, self.angles, coefficients, *count, &weights[..lanes]);
+            }
+        }
+        group.len()
+    }
+}
+
+impl WithSimd for Job<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        let mut from = 0;
+        while from < self.sizes.len() {
+            from += if self.sizes.len() - from > S::F64_LANES {
+                self.group::<S, INTERLEAVED>(simd, from)
+            } else {
+                self.group::<S, 1>(simd, from)
+            };
+        }
     }
 }

@@ -37,12 +37,15 @@
 //! [`Solver`] treats one sphere after another; [`sum`] a weighted sum over many spheres of one index.
 
 mod angular;
+mod instructions;
+mod lanes;
 mod many;
 mod recurrence;
 mod sphere;
 
 pub use angular::AngularTable;
-pub use many::{Sums, sum};
+pub use instructions::Instructions;
+pub use many::{Spheres, Sums, VECTORS_UP_TO};
 pub use sphere::{Amplitudes, Efficiencies, Solver, Sphere};
 
 use num_complex::Complex64;
@@ -87,6 +90,11 @@ impl RefractiveIndex {
     #[must_use]
     pub fn k(self) -> f64 {
         self.k
+    }
+
+    /// Whether it is that of the surroundings, so that nothing happens.
+    fn is_one(self) -> bool {
+        self.n == 1.0 && self.k == 0.0
     }
 
     /// n + ik.

@@ -1,6 +1,6 @@
 //! One sphere: coefficients, efficiencies, amplitudes.
 
-use super::recurrence::{chi, psi, ratios};
+use super::recurrence::{chi, differences, psi, ratios};
 use super::{LARGEST_INSIDE, MieError, RefractiveIndex, SIZE_PARAMETERS, angular, terms};
 use num_complex::Complex64;
 
@@ -22,6 +22,26 @@ pub struct Efficiencies {
     pub asymmetry: f64,
 }
 
+impl Efficiencies {
+    /// Those of a sphere that does nothing.
+    pub(super) const NOTHING: Self =
+        Self { extinction: 0.0, scattering: 0.0, absorption: 0.0, backscatter: 0.0, asymmetry: f64::NAN };
+
+    /// From the sums over n of (2n + 1) (|a_n|^2 + |b_n|^2), of the same of what is absorbed, of half of the scattering
+    /// times g, and of (2n + 1) (-1)^(n+1) (a_n - b_n), which is 2 S1(180 degrees).
+    #[inline]
+    pub(super) fn from_sums(x: f64, scattering: f64, absorption: f64, cosine: f64, back: [f64; 2]) -> Self {
+        let scale = 2.0 / (x * x);
+        Self {
+            extinction: scale * (scattering + absorption),
+            scattering: scale * scattering,
+            absorption: scale * absorption,
+            backscatter: (back[0] * back[0] + back[1] * back[1]) / (x * x),
+            asymmetry: 2.0 * cosine / scattering,
+        }
+    }
+}
+
 /// Amplitudes at one angle: for unpolarised light the scattered intensity is
 /// (|S1|^2 + |S2|^2) / 2 / (k r)^2 of the incident one, at the distance r and wave number k.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,6 +58,7 @@ pub struct Solver {
     psi: Vec<f64>,
     chi: Vec<f64>,
     ratios: Vec<Complex64>,
+    differences: Vec<Complex64>,
     a: Vec<Complex64>,
     b: Vec<Complex64>,
     /// Scattered and absorbed part of each term, of a_n and b_n together.
@@ -53,10 +74,10 @@ pub struct Sphere<'a> {
     parts: &'a [(f64, f64)],
 }
 
-/// One coefficient from its C: the coefficient, |coefficient|^2, and its absorbed part.
+/// One coefficient from its C and its numerator p = C psi_n + psi_(n+1): the coefficient, |coefficient|^2, and its
+/// absorbed part.
 #[inline]
-fn coefficient(c: Complex64, psi: [f64; 2], chi: [f64; 2]) -> (Complex64, f64, f64) {
-    let p = Complex64::new(c.re * psi[0] + psi[1], c.im * psi[0]);
+fn coefficient(c: Complex64, p: Complex64, chi: [f64; 2]) -> (Complex64, f64, f64) {
     let q = Complex64::new(c.re * chi[0] + chi[1], c.im * chi[0]);
     let below = Complex64::new(p.re + q.im, p.im - q.re);
     let weight = 1.0 / below.norm_sqr();
@@ -88,7 +109,7 @@ impl Solver {
         self.a.clear();
         self.b.clear();
         self.parts.clear();
-        if index == Complex64::ONE {
+        if m.is_one() {
             self.a.resize(count, Complex64::ZERO);
             self.b.resize(count, Complex64::ZERO);
             self.parts.resize(count, (0.0, 0.0));
@@ -97,13 +118,27 @@ impl Solver {
         psi(x, count + 1, &mut self.psi);
         chi(x, count + 1, &mut self.chi);
         ratios(z, count + 1, &mut self.ratios);
+        let matched = is_matched(m, x);
+        let against = square_less_one(m);
+        if matched {
+            differences(index, against, &self.ratios, &self.psi, &mut self.differences);
+        }
         let inverse = index.inv();
         let contrast = contrast(m) / x;
         for n in 1..=count {
             let (psi, chi) = ([self.psi[n], self.psi[n + 1]], [self.chi[n], self.chi[n + 1]]);
             let ratio = self.ratios[n + 1];
-            let (a, a_scattered, a_absorbed) = coefficient(contrast * (n + 1) as f64 - inverse * ratio, psi, chi);
-            let (b, b_scattered, b_absorbed) = coefficient(-index * ratio, psi, chi);
+            let (of_a, of_b) = (contrast * (n + 1) as f64 - inverse * ratio, -index * ratio);
+            let (above_a, above_b) = if matched {
+                let slope = (n + 1) as f64 / x * psi[0] - psi[1];
+                let difference = self.differences[n + 1];
+                (-(against * slope + difference) * inverse * inverse, -difference)
+            } else {
+                let above = |c: Complex64| Complex64::new(c.re * psi[0] + psi[1], c.im * psi[0]);
+                (above(of_a), above(of_b))
+            };
+            let (a, a_scattered, a_absorbed) = coefficient(of_a, above_a, chi);
+            let (b, b_scattered, b_absorbed) = coefficient(of_b, above_b, chi);
             self.a.push(a);
             self.b.push(b);
             self.parts.push((a_scattered + b_scattered, a_absorbed + b_absorbed));
@@ -112,8 +147,20 @@ impl Solver {
     }
 }
 
+/// Whether the numerators of a_n and b_n are small differences, of the order of x |m - 1|, and G_n serves better.
+pub(super) fn is_matched(m: RefractiveIndex, x: f64) -> bool {
+    let distance = (m.to_complex() - 1.0).norm();
+    distance < 0.1 && x * distance < 1.0
+}
+
+/// m^2 - 1 without cancellation.
+fn square_less_one(m: RefractiveIndex) -> Complex64 {
+    let (n, k) = (m.n(), m.k());
+    Complex64::new((n - 1.0) * (n + 1.0) - k * k, 2.0 * n * k)
+}
+
 /// 1/m^2 - 1 without cancellation: its real part as (1 - m)(1 + m)/m^2, its imaginary part as -2nk / |m|^4.
-fn contrast(m: RefractiveIndex) -> Complex64 {
+pub(super) fn contrast(m: RefractiveIndex) -> Complex64 {
     let (n, k) = (m.n(), m.k());
     let norm = (n * n + k * k) * (n * n + k * k);
     let numerator = (1.0 - n) * (1.0 + n) + k * k;
@@ -164,15 +211,7 @@ impl<'a> Sphere<'a> {
             cosine += c;
             back += r;
         }
-        let scale = 2.0 / (self.x * self.x);
-        Efficiencies {
-            extinction: scale * (scattering + absorption),
-            scattering: scale * scattering,
-            absorption: scale * absorption,
-            // S1(180) = half the sum of (2n + 1) (-1)^(n+1) (a_n - b_n).
-            backscatter: back.norm_sqr() / (self.x * self.x),
-            asymmetry: 2.0 * cosine / scattering,
-        }
+        Efficiencies::from_sums(self.x, scattering, absorption, cosine, [back.re, back.im])
     }
 
     /// Amplitudes at the angle whose cosine is `cosine`.
