@@ -13,6 +13,7 @@ pub mod frame;
 pub mod inspect;
 pub mod mie;
 pub mod mie_cases;
+pub mod mie_tasks;
 pub mod molecular;
 #[cfg(feature = "plot")]
 pub mod plot;

@@ -6,9 +6,6 @@ use pulp::Simd;
 /// Angles of one block of a table: a whole number of tiles of every instruction set.
 const WIDTH: usize = 24;
 
-/// Vectors of angles in a tile of the sums over orders, whose accumulators all fit into registers.
-const VECTORS: usize = 3;
-
 /// pi_n and tau_n at one angle, n = 1, 2, 3, ... in turn.
 ///
 /// In the form of Wiscombe (1980): with s = mu pi_n and t = s - pi_(n-1),
@@ -68,7 +65,8 @@ impl AngularTable {
     /// # Errors
     /// [`MieError::Cosine`] for a cosine outside -1..=1.
     pub fn new(cosines: &[f64], terms: usize) -> Result<Self, MieError> {
-        let length = cosines.len().next_multiple_of(WIDTH) * terms;
+        // A row too many, so that rows can begin anywhere in a block.
+        let length = cosines.len().next_multiple_of(WIDTH) * terms + WIDTH;
         let (mut plus, mut minus) = (vec![0.0; length], vec![0.0; length]);
         for (i, &cosine) in cosines.iter().enumerate() {
             let mut functions = Functions::new(cosine)?;
@@ -138,16 +136,37 @@ impl Matrix {
         count: usize,
         weights: &[f64],
     ) {
+        // So that the accumulators fit into 32 or 16 registers.
         match S::F64_LANES {
-            8 => self.add_by::<S, 4>(simd, table, (plus, minus), count, weights),
-            1 => self.add_by::<S, 1>(simd, table, (plus, minus), count, weights),
-            _ => self.add_by::<S, 2>(simd, table, (plus, minus), count, weights),
+            8 => self.add_by::<S, 4, 3>(simd, table, (plus, minus), count, weights),
+            4 => self.add_by::<S, 2, 3>(simd, table, (plus, minus), count, weights),
+            _ => self.add_plain(table, (plus, minus), count, weights[0]),
         }
     }
 
-    /// As [`Matrix::add`], so many spheres to a tile.
+    /// As [`Matrix::add`], of one sphere.
+    fn add_plain(&mut self, table: &AngularTable, (plus, minus): (&[f64], &[f64]), count: usize, weight: f64) {
+        for first in (0..self.parts[0].len()).step_by(WIDTH) {
+            let start = first * table.terms;
+            let [p, q] = sums_plain(&table.plus[start..], plus, count);
+            let [r, s] = sums_plain(&table.minus[start..], minus, count);
+            for j in 0..WIDTH {
+                let products = [
+                    p[j] * p[j] + q[j] * q[j],
+                    r[j] * r[j] + s[j] * s[j],
+                    p[j] * r[j] + q[j] * s[j],
+                    q[j] * r[j] - p[j] * s[j],
+                ];
+                for (part, product) in self.parts.iter_mut().zip(products) {
+                    part[first + j] += weight * product;
+                }
+            }
+        }
+    }
+
+    /// As [`Matrix::add`], by tiles of so many spheres and vectors of angles.
     #[inline(always)]
-    fn add_by<S: Simd, const SPHERES: usize>(
+    fn add_by<S: Simd, const SPHERES: usize, const VECTORS: usize>(
         &mut self,
         simd: S,
         table: &AngularTable,
@@ -161,12 +180,13 @@ impl Matrix {
         for first in (0..self.parts[0].len()).step_by(tile) {
             let start = first / WIDTH * block + first % WIDTH;
             for sphere in (0..lanes.min(weights.len())).step_by(SPHERES) {
-                let ahead = sums::<S, SPHERES>(simd, &table.plus[start..], &plus[sphere..], count);
-                let back = sums::<S, SPHERES>(simd, &table.minus[start..], &minus[sphere..], count);
+                let ahead = sums::<S, SPHERES, VECTORS>(simd, &table.plus[start..], &plus[sphere..], count);
+                let back = sums::<S, SPHERES, VECTORS>(simd, &table.minus[start..], &minus[sphere..], count);
                 for (i, &weight) in weights[sphere..].iter().enumerate().take(SPHERES) {
                     let weight = simd.splat_f64s(weight);
                     for v in 0..VECTORS {
-                        let ([p, q], [r, s]) = (ahead[i][v], back[i][v]);
+                        let [p, q] = [ahead[i][0][v], ahead[i][1][v]];
+                        let [r, s] = [back[i][0][v], back[i][1][v]];
                         let products = [
                             simd.mul_add_e_f64s(p, p, simd.mul_f64s(q, q)),
                             simd.mul_add_e_f64s(r, r, simd.mul_f64s(s, s)),
@@ -187,22 +207,50 @@ impl Matrix {
 /// The sums over n = 1 ..= `count` of functions times coefficients, for `SPHERES` spheres and a tile of angles: of each
 /// sphere and vector of angles the real and the imaginary part.
 #[inline(always)]
-fn sums<S: Simd, const SPHERES: usize>(
+fn sums<S: Simd, const SPHERES: usize, const VECTORS: usize>(
     simd: S,
     functions: &[f64],
     coefficients: &[f64],
     count: usize,
-) -> [[[S::f64s; 2]; VECTORS]; SPHERES] {
+) -> [[[S::f64s; VECTORS]; 2]; SPHERES] {
     let lanes = S::F64_LANES;
-    let mut sums = [[[simd.splat_f64s(0.0); 2]; VECTORS]; SPHERES];
-    for (row, both) in functions.chunks(WIDTH).zip(coefficients.chunks(2 * lanes)).take(count) {
+    let mut sums = [[[simd.splat_f64s(0.0); VECTORS]; 2]; SPHERES];
+    for (row, both) in functions.as_chunks::<WIDTH>().0.iter().zip(coefficients.chunks(2 * lanes)).take(count) {
         let (row, _) = S::as_simd_f64s(&row[..VECTORS * lanes]);
-        let (re, im) = (&both[..SPHERES], &both[lanes..lanes + SPHERES]);
+        let parts = [&both[..SPHERES], &both[lanes..lanes + SPHERES]];
         for i in 0..SPHERES {
-            let (re, im) = (simd.splat_f64s(re[i]), simd.splat_f64s(im[i]));
-            for v in 0..VECTORS {
-                sums[i][v][0] = simd.mul_add_e_f64s(re, row[v], sums[i][v][0]);
-                sums[i][v][1] = simd.mul_add_e_f64s(im, row[v], sums[i][v][1]);
+            for part in 0..2 {
+                let coefficient = simd.splat_f64s(parts[part][i]);
+                for v in 0..VECTORS {
+                    sums[i][part][v] = simd.mul_add_e_f64s(coefficient, row[v], sums[i][part][v]);
+                }
+            }
+        }
+    }
+    sums
+}
+
+/// The same for one sphere and a whole block of angles, by plain loops over arrays, four orders at a time: what
+/// compilers turn into the vector instructions that every processor has.
+fn sums_plain(functions: &[f64], coefficients: &[f64], count: usize) -> [[f64; WIDTH]; 2] {
+    const RUN: usize = 4;
+    let (rows, pairs) = (functions.as_chunks::<WIDTH>().0, coefficients.as_chunks::<2>().0);
+    let (rows, pairs) = (&rows[..count], &pairs[..count]);
+    let mut sums = [[0.0; WIDTH]; 2];
+    let (runs, rest) = rows.as_chunks::<RUN>();
+    let (pair_runs, pair_rest) = pairs.as_chunks::<RUN>();
+    for ([f0, f1, f2, f3], c) in runs.iter().zip(pair_runs) {
+        for part in 0..2 {
+            let [c0, c1, c2, c3] = c.map(|pair| pair[part]);
+            for (j, sum) in sums[part].iter_mut().enumerate() {
+                *sum += (c0 * f0[j] + c1 * f1[j]) + (c2 * f2[j] + c3 * f3[j]);
+            }
+        }
+    }
+    for (row, c) in rest.iter().zip(pair_rest) {
+        for part in 0..2 {
+            for (sum, f) in sums[part].iter_mut().zip(row) {
+                *sum += c[part] * f;
             }
         }
     }

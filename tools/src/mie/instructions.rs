@@ -5,7 +5,7 @@ use pulp::{Simd, WithSimd};
 /// An instruction set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Instructions {
-    /// What every processor of this architecture has: vectors of two on x86-64.
+    /// What every processor of this architecture has: one sphere at a time, several in turn.
     Plain,
     /// AVX2 and FMA: vectors of four.
     Avx2,
@@ -80,5 +80,5 @@ pub(super) fn run<J: WithSimd>(set: Instructions, job: J) -> J::Output {
         }
         Instructions::Plain => {}
     }
-    Simd::vectorize(pulp::Scalar128b, job)
+    Simd::vectorize(pulp::Scalar, job)
 }

@@ -148,7 +148,7 @@ fn inside<S: Simd, const VECTORS: usize>(
     let out = S::as_mut_simd_f64s(out).0;
     let start = super::recurrence::start((m.to_complex() * largest).norm(), last);
     let inverse = m.to_complex().inv();
-    let (zero, never) = (simd.splat_f64s(0.0), simd.splat_f64s(1e-150));
+    let zero = simd.splat_f64s(0.0);
     let mut inverses = [Complexes::<S> { re: zero, im: zero }; VECTORS];
     for (one, sizes) in inverses.iter_mut().zip(sizes) {
         let x = load::<S>(sizes);
@@ -156,27 +156,36 @@ fn inside<S: Simd, const VECTORS: usize>(
         one.im = simd.div_f64s(simd.splat_f64s(inverse.im), x);
     }
     let mut ratios = [Complexes::<S> { re: zero, im: zero }; VECTORS];
-    let one = simd.splat_f64s(1.0);
-    let mut step = |n: usize| {
-        let odd = simd.splat_f64s((2 * n + 1) as f64);
-        for (ratio, inverse) in ratios.iter_mut().zip(&inverses) {
-            // w = (2n + 1)/z - R_(n+1); a zero of it gives a number so large that the next step forgets it.
-            let re = simd.add_f64s(simd.sub_f64s(simd.mul_f64s(odd, inverse.re), ratio.re), never);
-            let im = simd.sub_f64s(simd.mul_f64s(odd, inverse.im), ratio.im);
-            let weight = simd.div_f64s(one, simd.mul_add_e_f64s(re, re, simd.mul_f64s(im, im)));
-            ratio.re = simd.mul_f64s(re, weight);
-            ratio.im = simd.neg_f64s(simd.mul_f64s(im, weight));
-        }
-        ratios
-    };
     for n in (last + 1..=start).rev() {
-        step(n);
+        step_inside(simd, n, &inverses, &mut ratios);
     }
     for n in (1..=last).rev() {
-        for (v, ratio) in step(n).into_iter().enumerate() {
-            out[n * width + 2 * v] = ratio.re;
-            out[n * width + 2 * v + 1] = ratio.im;
+        step_inside(simd, n, &inverses, &mut ratios);
+        let row = &mut out[n * width..(n + 1) * width];
+        for v in 0..VECTORS {
+            row[2 * v] = ratios[v].re;
+            row[2 * v + 1] = ratios[v].im;
         }
+    }
+}
+
+/// From R_(n+1) to R_n = 1 / w, w = (2n + 1)/z - R_(n+1).
+#[inline(always)]
+fn step_inside<S: Simd, const VECTORS: usize>(
+    simd: S,
+    n: usize,
+    inverses: &[Complexes<S>; VECTORS],
+    ratios: &mut [Complexes<S>; VECTORS],
+) {
+    let odd = simd.splat_f64s((2 * n + 1) as f64);
+    // A zero of w gives a number so large that the next step forgets it.
+    let (one, never) = (simd.splat_f64s(1.0), simd.splat_f64s(1e-150));
+    for v in 0..VECTORS {
+        let re = simd.add_f64s(simd.sub_f64s(simd.mul_f64s(odd, inverses[v].re), ratios[v].re), never);
+        // Of -w, so that no sign needs to change.
+        let im = simd.sub_f64s(ratios[v].im, simd.mul_f64s(odd, inverses[v].im));
+        let weight = simd.div_f64s(one, simd.mul_add_e_f64s(re, re, simd.mul_f64s(im, im)));
+        ratios[v] = Complexes { re: simd.mul_f64s(re, weight), im: simd.mul_f64s(im, weight) };
     }
 }
 
@@ -197,21 +206,27 @@ fn outside<S: Simd, const VECTORS: usize>(
         *inverse = simd.div_f64s(one, load::<S>(sizes));
     }
     let mut ratios = [simd.splat_f64s(0.0); VECTORS];
-    let mut step = |n: usize| {
-        let odd = simd.splat_f64s((2 * n + 1) as f64);
-        for (ratio, inverse) in ratios.iter_mut().zip(&inverses) {
-            *ratio = simd.div_f64s(one, simd.sub_f64s(simd.mul_f64s(odd, *inverse), *ratio));
-        }
-        ratios
-    };
     for n in (last + 1..=super::recurrence::start_outside(largest, last)).rev() {
-        step(n);
+        step_outside(simd, n, &inverses, &mut ratios);
     }
     let lowest = super::recurrence::upward_to(sizes[0][0], last);
     for n in (lowest + 1..=last).rev() {
-        for (v, ratio) in step(n).into_iter().enumerate() {
-            out[n * VECTORS + v] = ratio;
-        }
+        step_outside(simd, n, &inverses, &mut ratios);
+        out[n * VECTORS..(n + 1) * VECTORS].copy_from_slice(&ratios);
+    }
+}
+
+/// From psi_(n+1) / psi_n to psi_n / psi_(n-1) = 1 / ((2n + 1)/x - psi_(n+1) / psi_n).
+#[inline(always)]
+fn step_outside<S: Simd, const VECTORS: usize>(
+    simd: S,
+    n: usize,
+    inverses: &[S::f64s; VECTORS],
+    ratios: &mut [S::f64s; VECTORS],
+) {
+    let (odd, one) = (simd.splat_f64s((2 * n + 1) as f64), simd.splat_f64s(1.0));
+    for v in 0..VECTORS {
+        ratios[v] = simd.div_f64s(one, simd.sub_f64s(simd.mul_f64s(odd, inverses[v]), ratios[v]));
     }
 }
 
@@ -267,22 +282,19 @@ fn coefficients<S: Simd>(
     (plus, minus): (&mut [S::f64s], &mut [S::f64s]),
 ) -> Totals {
     let lanes = S::F64_LANES;
-    let each = |f: &dyn Fn(f64) -> f64| {
-        let mut values = [0.0; LANES];
-        for (value, x) in values.iter_mut().zip(&sizes[..lanes]) {
-            *value = f(*x);
-        }
-        load::<S>(&values)
-    };
     let upward = |x: f64| super::recurrence::upward_to(x, count + 1);
+    let (mut last_upward, mut counts) = ([0.0; LANES], [0.0; LANES]);
+    for (lane, &x) in sizes[..lanes].iter().enumerate() {
+        (last_upward[lane], counts[lane]) = (upward(x) as f64, terms(x) as f64);
+    }
     let zero = simd.splat_f64s(0.0);
     let nothing = Complexes { re: zero, im: zero };
-    let inverse_x = each(&|x| 1.0 / x);
+    let inverse_x = simd.div_f64s(simd.splat_f64s(1.0), load::<S>(sizes));
     let contrast = sphere::contrast(m);
     let shared = Shared {
         inverse_x,
-        upward: each(&|x| upward(x) as f64),
-        count: each(&|x| terms(x) as f64),
+        upward: load::<S>(&last_upward),
+        count: load::<S>(&counts),
         index: Complexes::splat(simd, m.to_complex()),
         inverse_index: Complexes::splat(simd, m.to_complex().inv()),
         contrast: Complexes {
@@ -385,29 +397,12 @@ fn advance<S: Simd, const MIXED: bool>(
         re: simd.sub_f64s(simd.mul_f64s(index.im, inside.im), simd.mul_f64s(index.re, inside.re)),
         im: simd.neg_f64s(simd.mul_add_e_f64s(index.re, inside.im, simd.mul_f64s(index.im, inside.re))),
     };
-    let fraction = |c: Complexes<S>| {
-        let above = Complexes::<S> { re: simd.mul_add_e_f64s(c.re, psi, next_psi), im: simd.mul_f64s(c.im, psi) };
-        let below = Complexes::<S> {
-            re: simd.mul_add_e_f64s(c.im, chi, above.re),
-            im: simd.sub_f64s(above.im, simd.mul_add_e_f64s(c.re, chi, next_chi)),
-        };
-        let square = simd.mul_add_e_f64s(below.re, below.re, simd.mul_f64s(below.im, below.im));
-        (above, below, square)
-    };
-    let (above_a, below_a, square_a) = fraction(of_a);
-    let (above_b, below_b, square_b) = fraction(of_b);
+    let (above_a, below_a, square_a) = fraction(simd, of_a, [psi, next_psi], [chi, next_chi]);
+    let (above_b, below_b, square_b) = fraction(simd, of_b, [psi, next_psi], [chi, next_chi]);
     // One division for both.
     let both = simd.div_f64s(simd.splat_f64s(1.0), simd.mul_f64s(square_a, square_b));
-    let finish = |c: Complexes<S>, above: Complexes<S>, below: Complexes<S>, weight: S::f64s| {
-        let square = simd.mul_add_e_f64s(above.re, above.re, simd.mul_f64s(above.im, above.im));
-        let scattered = simd.mul_f64s(square, weight);
-        let absorbed = simd.neg_f64s(simd.mul_f64s(c.im, weight));
-        let im = simd.sub_f64s(simd.mul_f64s(above.im, below.re), simd.mul_f64s(above.re, below.im));
-        let re = simd.add_f64s(scattered, absorbed);
-        (Complexes::<S> { re, im: simd.mul_f64s(im, weight) }, scattered, absorbed)
-    };
-    let (mut a, scattered_a, absorbed_a) = finish(of_a, above_a, below_a, simd.mul_f64s(both, square_b));
-    let (mut b, scattered_b, absorbed_b) = finish(of_b, above_b, below_b, simd.mul_f64s(both, square_a));
+    let (mut a, scattered_a, absorbed_a) = finish(simd, of_a, above_a, below_a, simd.mul_f64s(both, square_b));
+    let (mut b, scattered_b, absorbed_b) = finish(simd, of_b, above_b, below_b, simd.mul_f64s(both, square_a));
     let mut scattered = simd.add_f64s(scattered_a, scattered_b);
     let mut absorbed = simd.add_f64s(absorbed_a, absorbed_b);
     if MIXED {
@@ -428,4 +423,37 @@ fn advance<S: Simd, const MIXED: bool>(
     sum.back.re = simd.mul_add_e_f64s(signed, simd.sub_f64s(a.re, b.re), sum.back.re);
     sum.back.im = simd.mul_add_e_f64s(signed, simd.sub_f64s(a.im, b.im), sum.back.im);
     State { psi: [psi, next_psi], chi: [chi, next_chi], a, b }
+}
+
+/// Of a coefficient with this C: p = C psi_n + psi_(n+1), C xi_n + xi_(n+1), and the square of the latter.
+#[inline(always)]
+fn fraction<S: Simd>(
+    simd: S,
+    c: Complexes<S>,
+    psi: [S::f64s; 2],
+    chi: [S::f64s; 2],
+) -> (Complexes<S>, Complexes<S>, S::f64s) {
+    let above = Complexes { re: simd.mul_add_e_f64s(c.re, psi[0], psi[1]), im: simd.mul_f64s(c.im, psi[0]) };
+    let below = Complexes {
+        re: simd.mul_add_e_f64s(c.im, chi[0], above.re),
+        im: simd.sub_f64s(above.im, simd.mul_add_e_f64s(c.re, chi[0], chi[1])),
+    };
+    (above, below, simd.mul_add_e_f64s(below.re, below.re, simd.mul_f64s(below.im, below.im)))
+}
+
+/// The coefficient, its square, and its absorbed part, with one over the square of what is below.
+#[inline(always)]
+fn finish<S: Simd>(
+    simd: S,
+    c: Complexes<S>,
+    above: Complexes<S>,
+    below: Complexes<S>,
+    weight: S::f64s,
+) -> (Complexes<S>, S::f64s, S::f64s) {
+    let square = simd.mul_add_e_f64s(above.re, above.re, simd.mul_f64s(above.im, above.im));
+    let scattered = simd.mul_f64s(square, weight);
+    let absorbed = simd.neg_f64s(simd.mul_f64s(c.im, weight));
+    let im = simd.sub_f64s(simd.mul_f64s(above.im, below.re), simd.mul_f64s(above.re, below.im));
+    let coefficient = Complexes { re: simd.add_f64s(scattered, absorbed), im: simd.mul_f64s(im, weight) };
+    (coefficient, scattered, absorbed)
 }

@@ -113,7 +113,13 @@ pub(super) fn ratios(z: Complex64, last: usize, out: &mut Vec<Complex64>) {
 /// G_n = (R_n(z) / m) ((m^2 - 1) psi_(n-1)(x) + G_(n+1)),
 ///
 /// downwards from 0, each step a factor 1/m: for x |m - 1| of order 1 or less. `ratios` reaches to `psi.len() - 1`.
-pub(super) fn differences(m: Complex64, contrast: Complex64, ratios: &[Complex64], psi: &[f64], out: &mut Vec<Complex64>) {
+pub(super) fn differences(
+    m: Complex64,
+    contrast: Complex64,
+    ratios: &[Complex64],
+    psi: &[f64],
+    out: &mut Vec<Complex64>,
+) {
     out.clear();
     out.resize(psi.len() + 1, Complex64::ZERO);
     let inverse = m.inv();

@@ -129,44 +129,117 @@ fn a_large_sphere_takes_out_twice_its_shadow() {
     assert!((q - 2.0 - 1.9924 * x.powf(-2.0 / 3.0)).abs() < 1.0 / x, "{q}");
 }
 
+/// Sizes on both sides of all that is decided by the size: upward recurrence, vectors, doubled precision.
+fn sizes() -> Vec<f64> {
+    (0..97).map(|i| 1e-3 * 1.17_f64.powi(i)).chain([1e-6, 1.999, 2.0, 2000.0, 2000.1]).collect()
+}
+
+#[test]
+fn every_instruction_set_gives_what_single_spheres_do() {
+    let mut single = Solver::new();
+    for instructions in Instructions::available() {
+        let mut many = Spheres::with(instructions);
+        for (n, k) in [(1.5, 0.01), (1.33, 0.0), (0.75, 1e-6), (1.0001, 0.0), (10.0, 10.0), (0.1, 4.0)] {
+            let found = many.efficiencies(index(n, k), &sizes()).expect("in range");
+            for (x, q) in sizes().into_iter().zip(found) {
+                let expected = single.sphere(index(n, k), x).expect("in range").efficiencies();
+                let pairs = [
+                    (q.extinction, expected.extinction),
+                    (q.scattering, expected.scattering),
+                    (q.asymmetry, expected.asymmetry),
+                ];
+                // Rounding, which the ripple of clear spheres passes on x times enlarged.
+                let tolerance = 1e-13 + 2e-15 * x;
+                for (found, expected) in pairs {
+                    let sound = (found - expected).abs() <= tolerance * expected.abs();
+                    assert!(sound, "{instructions}, {n} + {k}i, x = {x}: {found}, {expected}");
+                }
+                assert!((q.absorption - expected.absorption).abs() <= tolerance * expected.absorption);
+                let back = (q.backscatter - expected.backscatter).abs() <= 100.0 * tolerance * expected.backscatter;
+                assert!(back, "{instructions}, {n} + {k}i, x = {x}: {q:?}, {expected:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn sums_over_spheres_are_those_of_the_spheres() {
     let m = index(1.53, 0.008);
-    let cosines = [-1.0, -0.3, 0.0, 0.2, 0.9, 0.99, 1.0];
-    let spheres: Vec<(f64, f64)> = (0..21).map(|i| (0.05 * 1.5_f64.powi(i), 1.0 + f64::from(i % 3))).collect();
+    let cosines: Vec<f64> = (0..=30).map(|i| (6.0 * f64::from(i)).to_radians().cos()).collect();
+    let spheres: Vec<(f64, f64)> = (0..30).map(|i| (0.05 * 1.33_f64.powi(i), 1.0 + f64::from(i % 3))).collect();
     let angles = AngularTable::new(&cosines, terms(200.0)).expect("cosines");
-    let sums = sum(m, spheres.iter().copied(), &angles, &mut Solver::new()).expect("in range");
     let mut solver = Solver::new();
     let mut expected = Sums::zero(cosines.len());
     for &(x, weight) in &spheres {
         let sphere = solver.sphere(m, x).expect("in range");
         let q = sphere.efficiencies();
-        let intensity = |c: &f64| {
-            let s = sphere.amplitudes(*c).expect("a cosine");
-            0.5 * (s.s1.norm_sqr() + s.s2.norm_sqr())
-        };
+        let s = cosines.iter().map(|c| sphere.amplitudes(*c).expect("a cosine"));
+        let (one, two): (Vec<_>, Vec<_>) = s.map(|s| (s.s1, s.s2)).unzip();
+        let element = |f: fn(Complex64, Complex64) -> f64| one.iter().zip(&two).map(|(a, b)| f(*a, *b)).collect();
+        let area = PI * x * x;
         let one = Sums {
-            extinction: PI * x * x * q.extinction,
-            scattering: PI * x * x * q.scattering,
-            absorption: PI * x * x * q.absorption,
-            forward: PI * x * x * q.scattering * q.asymmetry,
-            intensity: cosines.iter().map(intensity).collect(),
+            extinction: area * q.extinction,
+            scattering: area * q.scattering,
+            absorption: area * q.absorption,
+            forward: area * q.scattering * q.asymmetry,
+            backscatter: area * q.backscatter,
+            matrix: [
+                element(|a, b| 0.5 * (a.norm_sqr() + b.norm_sqr())),
+                element(|a, b| 0.5 * (b.norm_sqr() - a.norm_sqr())),
+                element(|a, b| (a * b.conj()).re),
+                element(|a, b| (b * a.conj()).im),
+            ],
         };
         expected.add(&one, weight);
     }
-    let pairs = sums.intensity.iter().zip(&expected.intensity).chain([
-        (&sums.extinction, &expected.extinction),
-        (&sums.absorption, &expected.absorption),
-        (&sums.forward, &expected.forward),
-    ]);
-    for (found, expected) in pairs {
-        // The sums are in another order, and S1 and S2 are half the sum and difference of S+ and S-.
-        assert!((found / expected - 1.0).abs() < 1e-12, "{found} against {expected}");
+    for instructions in Instructions::available() {
+        let mut many = Spheres::with(instructions);
+        let sums = many.sum(m, spheres.iter().copied(), &angles).expect("in range");
+        for (found, expected) in [
+            (sums.extinction, expected.extinction),
+            (sums.absorption, expected.absorption),
+            (sums.forward, expected.forward),
+            (sums.backscatter, expected.backscatter),
+        ] {
+            // Other orders of sums and roundings, a hundred times 1e-16 and in the backward amplitude more.
+            assert!((found / expected - 1.0).abs() < 1e-12, "{instructions}: {found} against {expected}");
+        }
+        for (found, expected) in sums.matrix.iter().zip(&expected.matrix) {
+            for (j, (found, expected)) in found.iter().zip(expected).enumerate() {
+                // S1 and S2 are half the sum and difference of S+ and S-: errors are relative to the intensity.
+                let close = (found - expected).abs() < 1e-12 * sums.intensity()[j];
+                assert!(close, "{instructions}, angle {j}: {found} against {expected}");
+            }
+        }
+        let error = many.sum(m, [(300.0, 1.0)], &angles).expect_err("a table that is too small");
+        assert!(matches!(error, MieError::Terms { needed, available } if needed > available));
     }
-    assert!(matches!(
-        sum(m, [(300.0, 1.0)], &angles, &mut solver),
-        Err(MieError::Terms { needed, available }) if needed > available
-    ));
+}
+
+#[test]
+fn a_scattering_matrix_of_one_sphere_is_pure() {
+    // S11^2 = S12^2 + S33^2 + S34^2 (Bohren & Huffman 1983, section 4.4.1).
+    let cosines: Vec<f64> = (0..=36).map(|i| (5.0 * f64::from(i)).to_radians().cos()).collect();
+    let angles = AngularTable::new(&cosines, terms(30.0)).expect("cosines");
+    let sums = Spheres::new().sum(index(1.4, 0.02), [(30.0, 1.0)], &angles).expect("in range");
+    for j in 0..cosines.len() {
+        let [s11, s12, s33, s34] = [0, 1, 2, 3].map(|i| sums.matrix[i][j]);
+        let sum = s12 * s12 + s33 * s33 + s34 * s34;
+        assert!((sum / (s11 * s11) - 1.0).abs() < 1e-13, "angle {j}: {sum}, {s11}");
+    }
+}
+
+#[test]
+fn many_spheres_come_back_in_their_order_and_bad_ones_are_named() {
+    let mut many = Spheres::new();
+    let found = many.efficiencies(index(1.5, 0.0), &[3.0, 0.5, 2500.0, 0.5]).expect("in range");
+    assert!(found[1] == found[3] && found[0].extinction > found[1].extinction, "{found:?}");
+    assert!(many.efficiencies(index(1.5, 0.0), &[]).expect("nothing to do").is_empty());
+    let error = many.efficiencies(index(1.5, 0.0), &[1.0, -3.0]).expect_err("no size");
+    assert_eq!(error, MieError::Size { x: -3.0 });
+    assert!(matches!(many.efficiencies(index(1e4, 0.0), &[2e3]), Err(MieError::Inside { .. })));
+    let same = many.efficiencies(index(1.0, 0.0), &[1.0]).expect("in range")[0];
+    assert!(same.extinction == 0.0 && same.asymmetry.is_nan());
 }
 
 #[test]

@@ -1,0 +1,141 @@
+//! Timed tasks that compare Mie solvers: (a) efficiencies of many spheres of one index, (b) sums over size
+//! distributions with a phase function. Files in the convention m = n - ik, lengths in um, as other programs write them.
+
+use crate::mie::{AngularTable, Efficiencies, Instructions, MieError, RefractiveIndex, Spheres, terms};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+
+/// Why a task cannot be done.
+#[derive(Debug, thiserror::Error)]
+pub enum TaskError {
+    /// The input is not what the task takes.
+    #[error("{0}")]
+    Input(String),
+    /// A sphere is out of range.
+    #[error(transparent)]
+    Sphere(#[from] MieError),
+}
+
+/// What a task gave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Done {
+    /// The results as CSV.
+    pub csv: String,
+    /// Time of the fastest repeat, without reading and writing; the repeats start from the numbers read.
+    pub fastest: Duration,
+}
+
+/// Runs `work` `repeats` times, at least once; its last result and the time of its fastest run.
+fn timed<T>(repeats: u32, mut work: impl FnMut() -> Result<T, MieError>) -> Result<(T, Duration), MieError> {
+    let mut start = Instant::now();
+    let mut result = work()?;
+    let mut fastest = start.elapsed();
+    for _ in 1..repeats {
+        start = Instant::now();
+        result = work()?;
+        fastest = fastest.min(start.elapsed());
+    }
+    Ok((result, fastest))
+}
+
+/// Task (a): a CSV with the columns `x`, `m_re`, `m_im` (m = n - ik, `m_im` <= 0), all of one index. Gives `Qext`, `Qsca`,
+/// `Qabs`, `Qback`, `g` of each in order.
+///
+/// # Errors
+/// [`TaskError`] for a malformed input, more than one index, or a sphere out of range.
+pub fn efficiencies(input: &str, instructions: Instructions, repeats: u32) -> Result<Done, TaskError> {
+    let mut reader = csv::Reader::from_reader(input.as_bytes());
+    let mut rows: Vec<(f64, f64, f64)> = Vec::new();
+    for row in reader.deserialize() {
+        rows.push(row.map_err(|e: csv::Error| TaskError::Input(e.to_string()))?);
+    }
+    let Some(&(_, n, minus_k)) = rows.first() else { return Err(TaskError::Input("no spheres".into())) };
+    if let Some(i) = rows.iter().position(|row| (row.1, row.2) != (n, minus_k)) {
+        return Err(TaskError::Input(format!("line {}: another refractive index than in line 2", i + 2)));
+    }
+    let m = RefractiveIndex::new(n, -minus_k)?;
+    let x: Vec<f64> = rows.iter().map(|row| row.0).collect();
+    let mut solver = Spheres::with(instructions);
+    let (found, fastest) = timed(repeats, || solver.efficiencies(m, &x))?;
+    let mut csv = String::from("Qext,Qsca,Qabs,Qback,g\n");
+    for Efficiencies { extinction, scattering, absorption, backscatter, asymmetry } in found {
+        // Writing to a String does not fail.
+        let _ = writeln!(csv, "{extinction:e},{scattering:e},{absorption:e},{backscatter:e},{asymmetry:e}");
+    }
+    Ok(Done { csv, fastest })
+}
+
+/// One size distribution of task (b).
+#[derive(Debug, Deserialize)]
+struct Mode {
+    /// um.
+    wavelengths: Vec<f64>,
+    /// um.
+    r: Vec<f64>,
+    w: Vec<f64>,
+    m_re: f64,
+    m_im: f64,
+}
+
+/// The input of task (b).
+#[derive(Debug, Deserialize)]
+struct Distributions {
+    angles_deg: Vec<f64>,
+    #[serde(flatten)]
+    modes: BTreeMap<String, Mode>,
+}
+
+/// Task (b): JSON `{"angles_deg": [...], NAME: {"wavelengths": [um], "r": [um], "w": [...], "m_re", "m_im"}, ...}`.
+/// Gives for each mode and wavelength `mode`, `iw`, `Cext` and `Csca` (sum of w pi r^2 Q in um^2), `g`, and at each angle
+/// j `Pj` = sum of w (|S1|^2 + |S2|^2) / 2.
+///
+/// # Errors
+/// [`TaskError`] for a malformed input or a sphere out of range.
+pub fn distributions(input: &str, instructions: Instructions, repeats: u32) -> Result<Done, TaskError> {
+    let input: Distributions = serde_json::from_str(input).map_err(|e| TaskError::Input(e.to_string()))?;
+    let cosines: Vec<f64> = input.angles_deg.iter().map(|&a| cosine(a)).collect();
+    let mut jobs = Vec::new();
+    for (name, mode) in &input.modes {
+        if mode.r.len() != mode.w.len() || mode.r.is_empty() {
+            let (r, w) = (mode.r.len(), mode.w.len());
+            return Err(TaskError::Input(format!("{name}: {r} radii and {w} weights; as many of each are needed")));
+        }
+        let m = RefractiveIndex::new(mode.m_re, -mode.m_im)?;
+        jobs.extend(mode.wavelengths.iter().enumerate().map(|(i, &wavelength)| (name, mode, m, i, wavelength)));
+    }
+    let mut solver = Spheres::with(instructions);
+    let (found, fastest) = timed(repeats, || {
+        // The table of angular functions is part of the work.
+        let largest =
+            jobs.iter().flat_map(|(_, mode, _, _, wavelength)| mode.r.iter().map(move |r| 2.0 * PI * r / wavelength));
+        let table = AngularTable::new(&cosines, terms(largest.fold(0.0, f64::max)))?;
+        let one = |&(_, mode, m, _, wavelength): &(&String, &Mode, RefractiveIndex, usize, f64)| {
+            let k = 2.0 * PI / wavelength;
+            solver.sum(m, mode.r.iter().zip(&mode.w).map(|(r, w)| (k * r, *w)), &table)
+        };
+        jobs.iter().map(one).collect::<Result<Vec<_>, _>>()
+    })?;
+    let mut csv = String::from("mode,iw,Cext,Csca,g");
+    for j in 0..cosines.len() {
+        let _ = write!(csv, ",P{j}");
+    }
+    csv.push('\n');
+    for ((name, _, _, i, wavelength), sums) in jobs.iter().zip(&found) {
+        let area = (wavelength / (2.0 * PI)).powi(2);
+        let (extinction, scattering) = (area * sums.extinction, area * sums.scattering);
+        let _ = write!(csv, "{name},{i},{extinction:e},{scattering:e},{:e}", sums.forward / sums.scattering);
+        for p in sums.intensity() {
+            let _ = write!(csv, ",{p:e}");
+        }
+        csv.push('\n');
+    }
+    Ok(Done { csv, fastest })
+}
+
+/// The cosine of an angle in degrees, exact where it is a whole number.
+fn cosine(degrees: f64) -> f64 {
+    if degrees == 90.0 { 0.0 } else { degrees.to_radians().cos() }
+}
