@@ -24,7 +24,11 @@
 //!   overflow. Starting at max(N, |z|) + 15, as much older code does, is wrong by up to 1 in the
 //!   backward amplitude of large spheres that hardly absorb.
 //! - psi_n(x) upwards while n <= x and by downward ratios beyond, where upward recurrence fails;
-//!   chi_n(x) upwards, which is stable.
+//!   chi_n(x) upwards, which is stable. Above x = 2000 both in twice the precision of a double: each
+//!   rounding stays in the phase of all later orders.
+//! - For an index near 1 (x |m - 1| < 1) the numerators are small differences: -G_(n+1) for b_n, and
+//!   -((m^2 - 1) psi_n' + G_(n+1)) / m^2 for a_n, with G_n = m R_n(z) psi_(n-1)(x) - psi_n(x) by a recurrence of
+//!   its own that has no difference in it: G_n = (R_n(z) / m) ((m^2 - 1) psi_(n-1)(x) + G_(n+1)).
 //! - N = x + 7.2 x^(1/3) + 4 terms, where |a_n| falls below 1e-16. The rule of Wiscombe (1980),
 //!   x + 4.05 x^(1/3) + 2, makes |a_n|^2 as small, which amplitudes and absorption do not forgive.
 //! - The angular functions in the form of Wiscombe (1980), which is exact at 0 and 180 degrees.
@@ -34,17 +38,20 @@
 //! errors are those of the arithmetic, some 1e-15, times the condition of the case: near a narrow
 //! resonance of width w, x/w; in the backward amplitude of large clear spheres up to x.
 //!
-//! [`Solver`] treats one sphere after another; [`sum`] a weighted sum over many spheres of one index.
+//! [`Solver`] treats one sphere after another; [`Spheres`] many of one index at once: efficiencies, weighted sums with
+//! the scattering matrix at angles, and Legendre moments.
 
 mod angular;
 mod instructions;
 mod lanes;
+mod legendre;
 mod many;
 mod recurrence;
 mod sphere;
 
 pub use angular::AngularTable;
 pub use instructions::Instructions;
+pub use legendre::gauss_legendre;
 pub use many::{Spheres, Sums, VECTORS_UP_TO};
 pub use sphere::{Amplitudes, Efficiencies, Solver, Sphere};
 

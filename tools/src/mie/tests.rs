@@ -9,25 +9,6 @@ fn efficiencies(n: f64, k: f64, x: f64) -> Efficiencies {
     Solver::new().sphere(index(n, k), x).expect("in range").efficiencies()
 }
 
-/// Nodes and weights of Gauss-Legendre quadrature on -1..1, by Newton's method on P_n.
-fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
-    let node = |i: usize| {
-        let mut x = (PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..100 {
-            let (mut p, mut previous) = (1.0, 0.0);
-            for k in 0..n {
-                let k = k as f64;
-                (p, previous) = (((2.0 * k + 1.0) * x * p - k * previous) / (k + 1.0), p);
-            }
-            slope = n as f64 * (x * p - previous) / (x * x - 1.0);
-            x -= p / slope;
-        }
-        (x, 2.0 / ((1.0 - x * x) * slope * slope))
-    };
-    (0..n).map(node).collect()
-}
-
 #[test]
 fn what_is_no_sphere_is_refused() {
     for (n, k) in [(0.0, 0.0), (-1.0, 0.0), (1.5, -0.1), (f64::NAN, 0.0), (1.5, f64::INFINITY)] {
