@@ -106,7 +106,8 @@ fn fraction<T: Float>(z: Complex<T>, n: usize) -> Complex<T> {
         (above, below) = (part(i) + inverse(above), part(i) + inverse(below));
         let step = divided(above, below);
         ratio = ratio * step;
-        if !((step - Complex::new(T::one(), T::zero())).norm() > T::epsilon()) {
+        let change = (step - Complex::new(T::one(), T::zero())).norm();
+        if change.is_nan() || change <= T::epsilon() {
             return ratio - one_over * whole::<T>(n);
         }
         i += 1;

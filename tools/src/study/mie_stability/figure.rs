@@ -3,7 +3,7 @@
 use super::variants::{self, Group, Quantity, Variant};
 use super::{LARGE, column};
 use crate::frame::Frame;
-use crate::plot::colours::{BLACK, BLUE, ORANGE, VERMILION};
+use crate::plot::colours::{BLACK, BLUE, GREEN, ORANGE};
 use crate::plot::model::{Axis, Cells, Curve, Figure, Key, Panel, Stroke};
 use crate::plot::power_of_ten;
 use crate::study::Part;
@@ -11,6 +11,11 @@ use polars::prelude::PolarsError;
 
 /// The smallest error shown: the last digit of a double.
 const SMALLEST: f64 = 1e-16;
+
+/// An error as it is shown: none smaller than [`SMALLEST`], and none where there is none.
+fn shown(error: f64) -> f64 {
+    if error < SMALLEST { SMALLEST } else { error }
+}
 
 impl Quantity {
     /// Its name in words.
@@ -36,7 +41,13 @@ pub(in crate::study) fn figure(part: &Part) -> Result<Figure, PolarsError> {
     let group = groups.iter().find(|group| group.name == part.name);
     let group = group.ok_or_else(|| PolarsError::ColumnNotFound(part.name.into()))?;
     let map = Map::new(&part.frame)?;
-    let rows = panels(group).into_iter().map(|row| map.row(row)).collect::<Result<_, _>>()?;
+    let mut rows = panels(group).into_iter().map(|row| map.row(row)).collect::<Result<Vec<_>, _>>()?;
+    let mut cells: Vec<&mut Cells> = rows.iter_mut().flatten().filter_map(|panel| panel.cells.as_mut()).collect();
+    if cells.iter().flat_map(|cells| &cells.values).any(|(_, error)| error.is_infinite()) {
+        for cells in &mut cells {
+            cells.infinite = Some("no number".into());
+        }
+    }
     Ok(Figure { title: format!("{}: relative error against arbitrary precision", group.title), rows })
 }
 
@@ -80,9 +91,11 @@ impl<'a> Map<'a> {
         let sizes = distinct(&x);
         // Half-way between neighbours, and as far beyond the ends.
         let middles: Vec<f64> = sizes.windows(2).map(|pair| (pair[0] * pair[1]).sqrt()).collect();
-        let first = sizes[0] * sizes[0] / middles[0];
-        let last = sizes[sizes.len() - 1] * sizes[sizes.len() - 1] / middles[middles.len() - 1];
-        let edges: Vec<f64> = std::iter::once(first).chain(middles).chain([last]).collect();
+        let ([low, .., high], [first, .., last]) = (&sizes[..], &middles[..]) else {
+            return Err(PolarsError::NoData("fewer than three size parameters".into()));
+        };
+        let ends = (low * low / first, high * high / last);
+        let edges: Vec<f64> = std::iter::once(ends.0).chain(middles).chain([ends.1]).collect();
         // From clear to black, and by n.
         let mut indices: Vec<(f64, f64)> = k.iter().copied().zip(n.iter().copied()).collect();
         indices.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -94,35 +107,40 @@ impl<'a> Map<'a> {
         };
         let places = x.iter().zip(&n).zip(&k).map(place).collect();
         let names = (0..).zip(&indices).map(|(row, &(k, n))| (f64::from(row) + 0.5, name(n, k))).collect();
-        Ok(Self { frame, places, ends: (first, last), names })
+        Ok(Self { frame, places, ends, names })
     }
 
     fn row(&self, shown: Vec<Shown<'_>>) -> Result<Vec<Panel>, PolarsError> {
-        let last = shown.len() - 1;
-        shown.into_iter().enumerate().map(|(i, shown)| self.panel(shown, i == 0, i == last)).collect()
+        let (last, decades) = (shown.len() - 1, if shown.len() > 3 { 4 } else { 2 });
+        let panel = |(i, shown)| {
+            let size = Axis::logarithmic("size parameter", self.ends.0, self.ends.1, decades);
+            self.panel(shown, size, i == 0, i == last)
+        };
+        shown.into_iter().enumerate().map(panel).collect()
     }
 
-    fn panel(&self, (variant, quantity, title): Shown<'_>, first: bool, last: bool) -> Result<Panel, PolarsError> {
+    fn panel(
+        &self,
+        (variant, quantity, title): Shown<'_>,
+        size: Axis,
+        first: bool,
+        last: bool,
+    ) -> Result<Panel, PolarsError> {
         let errors = self.frame.column(&column(variant.key, quantity))?;
-        let values = self.places.iter().copied().zip(errors.into_iter().map(|error| error.max(SMALLEST)));
+        let values = self.places.iter().copied().zip(errors.into_iter().map(shown));
         let scale = Axis::logarithmic("relative error", SMALLEST, 1.0, 4);
-        let mut cells = Cells { numbered: false, bar: last, ..Cells::new(scale, values.collect()) };
-        cells.infinite = Some("no number".into());
+        let cells = Cells { numbered: false, bar: last, ..Cells::new(scale, values.collect()) };
         let blank = |(place, _): &(f64, String)| (*place, String::new());
         let (label, names) = if first {
-            (format!("{} by refractive index", quantity.words()), self.names.clone())
+            let of = if variant.title.is_empty() { "" } else { quantity.words() };
+            (format!("{of} by refractive index").trim_start().to_owned(), self.names.clone())
         } else {
             (String::new(), self.names.iter().map(blank).collect())
         };
         let rows = self.names.len() as f64;
         Ok(Panel {
             cells: Some(cells),
-            ..Panel::new(
-                Axis::logarithmic("size parameter", self.ends.0, self.ends.1, 2),
-                Axis::linear(&label, 0.0, rows, 1.0).named(names),
-                Vec::new(),
-            )
-            .titled(title)
+            ..Panel::new(size, Axis::linear(&label, 0.0, rows, 1.0).named(names), Vec::new()).titled(title)
         })
     }
 }
@@ -143,15 +161,15 @@ fn large(frame: &Frame) -> Result<Figure, PolarsError> {
     let x = frame.column("x")?;
     let panel = |quantity: Quantity| -> Result<Panel, PolarsError> {
         let mut curves = Vec::new();
-        for (variant, colour) in variants::large().iter().zip([ORANGE, BLUE, BLACK, VERMILION]) {
+        for (variant, colour) in variants::large().iter().zip([ORANGE, BLUE, BLACK, GREEN]) {
             let errors = frame.column(&column(variant.key, quantity))?;
-            let points = x.iter().copied().zip(errors.into_iter().map(|error| error.max(SMALLEST))).collect();
+            let points = x.iter().copied().zip(errors.into_iter().map(shown)).collect();
             curves.push(Curve::new(variant.title, colour, points).stroke(Stroke::Marks));
         }
         let key = if quantity == Quantity::Extinction { Key::TopLeft } else { Key::None };
         Ok(Panel::new(
-            Axis::logarithmic("size parameter", 1e-6, 1e6, 2),
-            Axis::logarithmic("relative error", SMALLEST, 1e-4, 2),
+            Axis::logarithmic("size parameter", 1e-7, 1e7, 2),
+            Axis::logarithmic("relative error", SMALLEST, 1e-6, 2),
             curves,
         )
         .titled(quantity.words())

@@ -87,7 +87,7 @@ pub(super) fn spheres() -> Result<Vec<Sphere>, StudyError> {
     rows(&SPHERES, |row| {
         // The file has m = n - ik, and with it the conjugates of the amplitudes.
         let complex = |re, im| Ok::<_, StudyError>(Complex64::new(row.number(re)?, -row.number(im)?));
-        let index = (row.number("m_re")?, -row.number("m_im")?);
+        let index = (row.number("m_re")?, 0.0 - row.number("m_im")?);
         sphere(row, index, complex("S1_0_re", "S1_0_im")?, complex("S1_180_re", "S1_180_im")?)
     })
 }

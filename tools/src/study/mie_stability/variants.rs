@@ -228,7 +228,7 @@ pub(super) fn groups() -> Vec<Group> {
             variants: vec![
                 double("psi_up", "upwards", psi(Radial::Up)),
                 double("psi_down", "downwards", psi(Radial::Down)),
-                double("psi_mixed", "upwards to n = x, downwards beyond", psi(Radial::Mixed)),
+                double("psi_mixed", "upwards to n = x", psi(Radial::Mixed)),
             ],
             rows: vec![Scattering, Asymmetry],
         },
@@ -261,7 +261,7 @@ pub(super) fn groups() -> Vec<Group> {
         },
         Group {
             name: "limits",
-            title: "Limits of small, large and faint spheres",
+            title: "Limits of small, large and faint spheres (blank where not meant)",
             variants: vec![
                 limit("rayleigh", "Rayleigh", Limit::Rayleigh),
                 limit("three_terms", "three terms", Limit::ThreeTerms),
@@ -274,12 +274,12 @@ pub(super) fn groups() -> Vec<Group> {
         },
         Group {
             name: "absorption",
-            title: "Absorption",
+            title: "Absorption (blank for clear spheres)",
             variants: vec![
-                double("difference", "Qext − Qsca", ROBUST),
-                double("wronskian", "Wronskian", wronskian),
-                single("single_difference", "Qext − Qsca, single", ROBUST),
-                single("single_wronskian", "Wronskian, single", wronskian),
+                double("difference", "Qext − Qsca, double precision", ROBUST),
+                double("wronskian", "Wronskian, double precision", wronskian),
+                variant("single_difference", "Qext − Qsca, single precision", Method::Single(ROBUST)),
+                variant("single_wronskian", "Wronskian, single precision", Method::Single(wronskian)),
             ],
             rows: vec![Absorbed],
         },
@@ -298,9 +298,9 @@ pub(super) fn large() -> [Variant; 4] {
     let double = |key, title, recipe| Variant { key, title, method: Method::Double(recipe) };
     let exact = Recipe { angular: Angular::Wiscombe, ..ROBUST };
     [
-        double("textbook_plain", "angular functions of the textbook", ROBUST),
-        double("wiscombe_plain", "of Wiscombe", exact),
-        double("wiscombe_blocked", "of Wiscombe, sums in blocks", Recipe { sums: Sums::Blocked, ..exact }),
+        double("textbook_plain", "textbook's angular functions", ROBUST),
+        double("wiscombe_plain", "Wiscombe's", exact),
+        double("wiscombe_blocked", "Wiscombe's, sums in blocks", Recipe { sums: Sums::Blocked, ..exact }),
         Variant { key: "ours", title: "Airlight's solver", method: Method::Ours },
     ]
 }
