@@ -88,10 +88,10 @@ pub(super) fn study(args: &StudyArgs) -> Result<(), String> {
     for name in study::Name::ALL.into_iter().filter(wanted) {
         let results = study::make(name, &args.raw_data).map_err(|e| e.to_string())?;
         let paths = study::write(name, &results, &args.out).map_err(|e| e.to_string())?;
-        for remark in &results.remarks {
-            print(&format!("{remark}\n"))?;
-        }
         if !args.quiet {
+            for remark in &results.remarks {
+                print(&format!("{remark}\n"))?;
+            }
             let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
             say(&paths.join("  "));
         }

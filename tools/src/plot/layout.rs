@@ -16,8 +16,9 @@ const NUMBER: f64 = 20.0;
 
 /// Room for the numbers and the label of an axis.
 const LEFT: f64 = 116.0;
-/// Room for a label and around the texts of an axis, where these are wider than usual.
-const AROUND: f64 = 60.0;
+/// The widest texts of an axis that fit there, and the room that wider ones need beside their width.
+const TEXTS: f64 = 62.0;
+const AROUND: f64 = 64.0;
 /// Room at the left of a panel whose axis there has neither label nor texts: it is its neighbour's.
 const JOINED: f64 = 4.0;
 const BELOW: f64 = 82.0;
@@ -63,7 +64,11 @@ pub(super) fn draw<B: DrawingBackend>(canvas: &mut Canvas<B>, figure: &Figure) -
 fn left_room<B: DrawingBackend>(canvas: &Canvas<B>, panel: &Panel) -> f64 {
     let widths = ticks(&panel.y).into_iter().filter_map(|tick| tick.text).map(|text| canvas.text_width(&text, NUMBER));
     let widest = widths.fold(0.0, f64::max);
-    if panel.y.label.is_empty() && widest == 0.0 { JOINED } else { LEFT.max(widest + AROUND) }
+    match widest {
+        0.0 if panel.y.label.is_empty() => JOINED,
+        narrow if narrow <= TEXTS => LEFT,
+        wide => wide + AROUND,
+    }
 }
 
 /// Room for the bar of a panel's heat map.

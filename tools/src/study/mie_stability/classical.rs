@@ -96,9 +96,20 @@ pub(super) enum Absorption {
     Wronskian,
 }
 
+/// What a_n and b_n are made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Form {
+    /// The logarithmic derivative, as in the textbook.
+    Derivative,
+    /// Ratios psi_n(z) / psi_(n-1)(z), with what cancels taken out, as in [`crate::mie`]; the choice of [`Derivative`] does
+    /// not matter.
+    Ratios,
+}
+
 /// One choice for each ingredient.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Recipe {
+    pub(super) form: Form,
     pub(super) derivative: Derivative,
     pub(super) radial: Radial,
     pub(super) terms: Terms,
@@ -140,25 +151,23 @@ impl Recipe {
         let last = self.terms.count(x);
         let m = Complex::new(real::<T>(n), real(k));
         let x = real::<T>(x);
-        let d = derivative::all(self.derivative, m, x, last);
-        let psi = radial(self.radial, x, last);
-        let chi = upwards(last, x, x.cos(), x.cos() / x + x.sin());
+        let inner = Inner::new(self, m, x, last);
+        let psi = radial(self.radial, x, last + 1);
+        let chi = upwards(last + 1, x, x.cos(), x.cos() / x + x.sin());
 
         let (mut total, mut ahead, mut back) = (Totals::default(), Pair::new(T::one()), Pair::new(-T::one()));
         let mut part = Totals::default();
         let mut previous = [Complex::new(T::zero(), T::zero()); 2];
         for n in 1..=last {
             let order = whole::<T>(n);
-            let over = order / x;
-            let (xi, xi_below) = (Complex::new(psi[n], -chi[n]), Complex::new(psi[n - 1], -chi[n - 1]));
+            let (factors, sign, other) = inner.factors(n, x);
+            let xi = |n: usize| Complex::new(psi[n], -chi[n]);
             let mut absorbed = T::zero();
-            let mut coefficient = |inside: Complex<T>| {
-                let factor = inside + over;
-                let below = factor * xi - xi_below;
-                absorbed = absorbed - inside.im / below.norm_sqr();
-                divided(factor * psi[n] - psi[n - 1], below)
-            };
-            let now = [coefficient(divided(d[n], m)), coefficient(d[n] * m)];
+            let now = factors.map(|factor| {
+                let below = factor * xi(n) + xi(other) * sign;
+                absorbed = absorbed - factor.im / below.norm_sqr();
+                divided(factor * psi[n] + psi[other] * sign, below)
+            });
             part.add(order, previous, now, absorbed);
             let weight = (order + order + T::one()) / (order * (order + T::one()));
             for (angle, sum) in [(&mut ahead, &mut part.forward), (&mut back, &mut part.backward)] {
@@ -171,6 +180,44 @@ impl Recipe {
             }
         }
         total.with(part).optics(x, self.absorption)
+    }
+}
+
+/// What the inside of the sphere gives to the coefficients.
+struct Inner<T> {
+    form: Form,
+    m: Complex<T>,
+    /// 1/m^2 - 1.
+    contrast: Complex<T>,
+    /// D_n(z), or psi_n(z) / psi_(n-1)(z), at index n.
+    values: Vec<Complex<T>>,
+}
+
+impl<T: Float> Inner<T> {
+    fn new(recipe: Recipe, m: Complex<T>, x: T, last: usize) -> Self {
+        let one = T::one();
+        let contrast = divided((-m + one) * (m + one), m * m);
+        let values = match recipe.form {
+            Form::Derivative => derivative::all(recipe.derivative, m, x, last),
+            Form::Ratios => derivative::ratios(m * x, last + 1),
+        };
+        Self { form: recipe.form, m, contrast, values }
+    }
+
+    /// The factors C of a_n and b_n, the sign s and the order o of
+    /// (C psi_n + s psi_o) / (C xi_n + s xi_o).
+    fn factors(&self, n: usize, x: T) -> ([Complex<T>; 2], T, usize) {
+        let m = self.m;
+        match self.form {
+            Form::Derivative => {
+                let (d, over) = (self.values[n], whole::<T>(n) / x);
+                ([divided(d, m) + over, d * m + over], -T::one(), n - 1)
+            }
+            Form::Ratios => {
+                let (ratio, over) = (self.values[n + 1], whole::<T>(n + 1) / x);
+                ([self.contrast * over - divided(ratio, m), -m * ratio], T::one(), n + 1)
+            }
+        }
     }
 }
 
@@ -194,9 +241,11 @@ fn radial<T: Float>(how: Radial, x: T, last: usize) -> Vec<T> {
         Radial::Mixed if x < real(2.0) => 0,
         Radial::Mixed => last.min(x.to_usize().unwrap_or(0)),
     };
+    // From where psi is 1e-8 of psi_last or less, so that starting with 0 is forgotten.
+    let start = last + (real::<T>(5.0) * x.cbrt()).to_usize().unwrap_or(0) + 16;
     let mut ratio = T::zero();
     let mut ratios = vec![T::zero(); last + 1];
-    for n in (1..=last + 50).rev() {
+    for n in (1..=start).rev() {
         ratio = T::one() / (whole::<T>(2 * n + 1) / x - ratio);
         if n <= last {
             ratios[n] = ratio;

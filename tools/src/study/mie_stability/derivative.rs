@@ -23,19 +23,14 @@ fn inverse<T: Float>(q: Complex<T>) -> Complex<T> {
 /// D_n(mx) for n = 0 ..= `last`.
 pub(super) fn all<T: Float>(how: Derivative, m: Complex<T>, x: T, last: usize) -> Vec<Complex<T>> {
     let z = m * x;
-    let size = z.norm();
-    let whole_size = |v: T| v.to_usize().unwrap_or(0);
     let zero = Complex::new(T::zero(), T::zero());
     match how {
         Derivative::UpSquares => upwards(squares(z), z, last),
         Derivative::UpExponential => upwards(exponential(z), z, last),
         Derivative::UpWhereAllowed if upward_allowed(m, x) => upwards(exponential(z), z, last),
         Derivative::UpWhereAllowed | Derivative::Fraction => downwards(fraction(z, last), z, last, last),
-        Derivative::DownFromLargest => downwards(zero, z, last.max(whole_size(size)) + 16, last),
-        Derivative::Down => {
-            let start = last.max(whole_size(size + real::<T>(8.0) * size.cbrt())) + 16;
-            downwards(zero, z, start, last)
-        }
+        Derivative::DownFromLargest => downwards(zero, z, last.max(z.norm().to_usize().unwrap_or(0)) + 16, last),
+        Derivative::Down => downwards(zero, z, safe_start(z, last), last),
     }
 }
 
@@ -88,6 +83,27 @@ fn downwards<T: Float>(first: Complex<T>, z: Complex<T>, start: usize, last: usi
     }
     values[0] = d;
     values
+}
+
+/// psi_n(z) / psi_(n-1)(z) for n = 0 ..= `last` (of no meaning at 0), R_n = 1 / ((2n + 1)/z - R_(n+1)) downwards from 0
+/// at max(last, |z| + 8 |z|^(1/3)) + 16.
+pub(super) fn ratios<T: Float>(z: Complex<T>, last: usize) -> Vec<Complex<T>> {
+    let one_over = inverse(z);
+    let mut values = vec![Complex::new(T::zero(), T::zero()); last + 1];
+    let mut ratio = values[0];
+    for n in (1..=safe_start(z, last)).rev() {
+        ratio = inverse(one_over * whole::<T>(2 * n + 1) - ratio);
+        if n <= last {
+            values[n] = ratio;
+        }
+    }
+    values
+}
+
+/// The order from which downward recurrence forgets its start before max(last, |z|).
+fn safe_start<T: Float>(z: Complex<T>, last: usize) -> usize {
+    let size = z.norm();
+    last.max((size + real::<T>(8.0) * size.cbrt()).to_usize().unwrap_or(0)) + 16
 }
 
 /// D_n(z) = J_(n-1/2)(z) / J_(n+1/2)(z) - n/z with the ratio as the continued fraction of Lentz (Appl. Opt. 15, 668,

@@ -132,8 +132,9 @@ impl<'a> Map<'a> {
         let cells = Cells { numbered: false, bar: last, ..Cells::new(scale, values.collect()) };
         let blank = |(place, _): &(f64, String)| (*place, String::new());
         let (label, names) = if first {
-            let of = if variant.title.is_empty() { "" } else { quantity.words() };
-            (format!("{of} by refractive index").trim_start().to_owned(), self.names.clone())
+            // Where the titles are quantities, they name them.
+            let of = if variant.title.is_empty() { String::new() } else { format!("{} by ", quantity.words()) };
+            (format!("{of}refractive index"), self.names.clone())
         } else {
             (String::new(), self.names.iter().map(blank).collect())
         };

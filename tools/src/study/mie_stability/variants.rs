@@ -1,6 +1,6 @@
 //! The variants that are compared: named sets of choices, in groups of which each makes one figure.
 
-use super::classical::{Absorption, Angular, Derivative, Optics, Radial, Recipe, Sums, Terms};
+use super::classical::{Absorption, Angular, Derivative, Form, Optics, Radial, Recipe, Sums, Terms};
 use super::limits::Limit;
 use super::reference::Sphere;
 use crate::mie::{MieError, RefractiveIndex, Solver};
@@ -9,12 +9,22 @@ use num_complex::Complex64;
 /// Every ingredient in its robust form, but for those that only tell beyond x = 1e5: the angular functions of the
 /// textbook and plain sums.
 pub(super) const ROBUST: Recipe = Recipe {
+    form: Form::Derivative,
     derivative: Derivative::Down,
     radial: Radial::Mixed,
     terms: Terms::Full,
     angular: Angular::Textbook,
     sums: Sums::Plain,
     absorption: Absorption::Difference,
+};
+
+/// The choices of [`crate::mie`], for any precision.
+pub(super) const OURS: Recipe = Recipe {
+    form: Form::Ratios,
+    angular: Angular::Wiscombe,
+    sums: Sums::Blocked,
+    absorption: Absorption::Wronskian,
+    ..ROBUST
 };
 
 /// How a variant computes.
@@ -250,12 +260,13 @@ pub(super) fn groups() -> Vec<Group> {
             variants: vec![
                 single("single_down_psi_up", "D down, psi up", psi(Radial::Up)),
                 single("single_down_psi_mixed", "D down, psi mixed", ROBUST),
-                single("single_fraction_psi_mixed", "D by Lentz, psi mixed", d(Derivative::Fraction)),
+                single("single_fraction_psi_mixed", "Lentz, psi mixed", d(Derivative::Fraction)),
                 single(
                     "single_largest_psi_up",
                     "D from max, psi up",
                     Recipe { radial: Radial::Up, ..d(Derivative::DownFromLargest) },
                 ),
+                variant("single_ours", "Airlight's choices", Method::Single(OURS)),
             ],
             rows: vec![Extinction, Backward],
         },
@@ -285,7 +296,7 @@ pub(super) fn groups() -> Vec<Group> {
         },
         Group {
             name: "ours",
-            title: "Airlight's solver",
+            title: "Airlight's solver (no absorption by clear spheres)",
             variants: vec![variant("ours", "", Method::Ours)],
             // Radar backscatter is as the amplitude at 180 degrees.
             rows: vec![Extinction, Scattering, Absorbed, Asymmetry, Forward, Backward],
