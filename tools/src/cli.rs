@@ -159,7 +159,12 @@ fn verdict(args: &BuildArgs, report: &CheckReport) -> String {
 
 fn show(file: &std::path::Path) -> Result<(), String> {
     let table = tables::file::read(file).map_err(|e| e.to_string())?;
-    match std::io::stdout().lock().write_all(inspect::describe(&table).as_bytes()) {
+    print(&inspect::describe(&table))
+}
+
+/// A text on standard output.
+fn print(text: &str) -> Result<(), String> {
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
         // A reader that has seen enough, such as `head`.
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
         other => other.map_err(|e| format!("standard output: {e}")),

@@ -1,5 +1,7 @@
 //! The subcommands `plot` and `study`.
 
+#[cfg(feature = "study")]
+use super::print;
 use super::say;
 use clap::Args;
 use std::path::PathBuf;
@@ -79,14 +81,17 @@ fn study_names() -> clap::builder::PossibleValuesParser {
     study::Name::ALL.map(study::Name::as_str).into()
 }
 
-/// Computes studies, and draws them if the program can.
+/// Computes studies, and draws them if the program can. What they say in words goes to standard output.
 #[cfg(feature = "study")]
 pub(super) fn study(args: &StudyArgs) -> Result<(), String> {
     let wanted = |name: &study::Name| args.studies.is_empty() || args.studies.iter().any(|s| s == name.as_str());
     for name in study::Name::ALL.into_iter().filter(wanted) {
-        let frame = study::make(name, &args.raw_data).map_err(|e| e.to_string())?;
-        let paths = study::write(name, &frame, &args.out).map_err(|e| e.to_string())?;
+        let results = study::make(name, &args.raw_data).map_err(|e| e.to_string())?;
+        let paths = study::write(name, &results, &args.out).map_err(|e| e.to_string())?;
         if !args.quiet {
+            for remark in &results.remarks {
+                print(&format!("{remark}\n"))?;
+            }
             let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
             say(&paths.join("  "));
         }

@@ -2,7 +2,7 @@
 
 use super::PlotError;
 use super::canvas::{Canvas, Frame, Place, Point};
-use super::colours::{self, BLACK, GRID, WHITE};
+use super::colours::{self, BLACK, GREY, GRID, WHITE};
 use super::model::{Axis, Cells, Curve, Figure, Key, Panel, Stroke};
 use plotters::backend::DrawingBackend;
 
@@ -16,6 +16,11 @@ const NUMBER: f64 = 20.0;
 
 /// Room for the numbers and the label of an axis.
 const LEFT: f64 = 116.0;
+/// The widest texts of an axis that fit there, and the room that wider ones need beside their width.
+const TEXTS: f64 = 62.0;
+const AROUND: f64 = 64.0;
+/// Room at the left of a panel whose axis there has neither label nor texts: it is its neighbour's.
+const JOINED: f64 = 4.0;
 const BELOW: f64 = 82.0;
 const RIGHT: f64 = 34.0;
 const ABOVE: f64 = 26.0;
@@ -42,9 +47,11 @@ pub(super) fn draw<B: DrawingBackend>(canvas: &mut Canvas<B>, figure: &Figure) -
     let row_height = (height - top) / figure.rows.len().max(1) as f64;
     for row in &figure.rows {
         let total: f64 = row.iter().map(|panel| panel.share).sum();
+        let extra: Vec<f64> = row.iter().map(|panel| left_room(canvas, panel) - LEFT + bar_room(panel)).collect();
+        let shared = width - extra.iter().sum::<f64>();
         let mut left = 0.0;
-        for panel in row {
-            let right = left + width * panel.share / total;
+        for (panel, extra) in row.iter().zip(extra) {
+            let right = left + extra + shared * panel.share / total;
             draw_panel(canvas, panel, Frame { left, top, right, bottom: top + row_height })?;
             left = right;
         }
@@ -53,17 +60,32 @@ pub(super) fn draw<B: DrawingBackend>(canvas: &mut Canvas<B>, figure: &Figure) -
     Ok(())
 }
 
+/// Room at the left of a panel.
+fn left_room<B: DrawingBackend>(canvas: &Canvas<B>, panel: &Panel) -> f64 {
+    let widths = ticks(&panel.y).into_iter().filter_map(|tick| tick.text).map(|text| canvas.text_width(&text, NUMBER));
+    let widest = widths.fold(0.0, f64::max);
+    match widest {
+        0.0 if panel.y.label.is_empty() => JOINED,
+        narrow if narrow <= TEXTS => LEFT,
+        wide => wide + AROUND,
+    }
+}
+
+/// Room for the bar of a panel's heat map.
+fn bar_room(panel: &Panel) -> f64 {
+    if panel.cells.as_ref().is_some_and(|cells| cells.bar) { BAR.0 + BAR.1 + BAR.2 } else { 0.0 }
+}
+
 /// Draws a panel with its axes into the room given.
 fn draw_panel<B: DrawingBackend>(canvas: &mut Canvas<B>, panel: &Panel, room: Frame) -> Result<(), PlotError> {
     let title = if panel.title.is_empty() { 0.0 } else { LINE };
     let key_width = key_width(canvas, panel);
     let beside = match (&panel.cells, panel.key) {
-        (Some(_), _) => BAR.0 + BAR.1 + BAR.2,
         (None, Key::Beside) => key_width + GAP,
-        _ => 0.0,
+        _ => bar_room(panel),
     };
     let frame = Frame {
-        left: room.left + LEFT,
+        left: room.left + left_room(canvas, panel),
         top: room.top + ABOVE + title,
         right: room.right - RIGHT - beside,
         bottom: room.bottom - BELOW,
@@ -108,7 +130,7 @@ fn draw_ticks<B: DrawingBackend>(canvas: &mut Canvas<B>, panel: &Panel, frame: F
             canvas.line((frame.left, y), (frame.right, y), GRID, 1.0)?;
         }
         canvas.line((frame.left - tick.length(), y), (frame.left, y), BLACK, 1.2)?;
-        if let Some(text) = &tick.text {
+        if let Some(text) = tick.text.as_ref().filter(|text| !text.is_empty()) {
             canvas.text(text, (frame.left - 13.0, y), NUMBER, BLACK, Place::LeftOf)?;
         }
     }
@@ -122,16 +144,23 @@ fn draw_cells<B: DrawingBackend>(
     place: impl Fn(f64, f64) -> Option<Point>,
 ) -> Result<(), PlotError> {
     for &((left, bottom, right, top), value) in &cells.values {
-        let (Some(a), Some(b), Some(shade)) = (place(left, top), place(right, bottom), cells.scale.fraction(value))
-        else {
-            continue;
+        let (Some(a), Some(b)) = (place(left, top), place(right, bottom)) else { continue };
+        let colour = match cells.scale.fraction(value) {
+            Some(shade) => colours::viridis(shade),
+            None if value.is_infinite() => GREY,
+            None => continue,
         };
-        let colour = colours::viridis(shade);
         let cell = Frame { left: a.0, top: a.1 - OVERLAP, right: b.0 + OVERLAP, bottom: b.1 };
         canvas.rectangle(cell, colour, true)?;
-        let middle = (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
-        canvas.text(&format!("{value:.0}"), middle, 0.85 * NUMBER, colours::on(colour), Place::Centred)?;
+        if cells.numbered {
+            let middle = (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
+            canvas.text(&format!("{value:.0}"), middle, 0.85 * NUMBER, colours::on(colour), Place::Centred)?;
+        }
     }
+    if cells.bar { draw_bar(canvas, cells, frame) } else { Ok(()) }
+}
+
+fn draw_bar<B: DrawingBackend>(canvas: &mut Canvas<B>, cells: &Cells, frame: Frame) -> Result<(), PlotError> {
     let left = frame.right + BAR.0;
     let right = left + BAR.1;
     let bar = Frame { left, right, ..frame };
@@ -148,6 +177,13 @@ fn draw_cells<B: DrawingBackend>(
         if let Some(text) = &tick.text {
             canvas.text(text, (right + 13.0, y), NUMBER, BLACK, Place::RightOf)?;
         }
+    }
+    if let Some(meaning) = &cells.infinite {
+        let top = frame.bottom + 14.0;
+        let sample = Frame { left, right, top, bottom: top + BAR.1 };
+        canvas.rectangle(sample, GREY, true)?;
+        canvas.rectangle(sample, BLACK, false)?;
+        canvas.text(meaning, (right + 13.0, top + 0.5 * BAR.1), NUMBER, BLACK, Place::RightOf)?;
     }
     let middle = 0.5 * (frame.top + frame.bottom);
     canvas.text(&cells.scale.label, (right + 72.0, middle), LABEL, BLACK, Place::Upwards)
@@ -253,7 +289,7 @@ fn ticks(axis: &Axis) -> Vec<Tick> {
 }
 
 /// "10" with a raised exponent.
-fn power_of_ten(exponent: i32) -> String {
+pub(crate) fn power_of_ten(exponent: i32) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',
         '1' => '¹',

@@ -14,6 +14,8 @@ mod ozone;
 mod picture;
 mod text;
 
+#[cfg(feature = "study")]
+pub(crate) use layout::power_of_ten;
 pub use picture::{png, svg};
 
 use crate::data::Data;

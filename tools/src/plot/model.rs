@@ -158,14 +158,28 @@ impl Curve {
     }
 }
 
-/// Cells of a heat map with a bar of their colours beside it.
+/// Cells of a heat map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cells {
-    /// What the bar shows: quantity, unit, range and ticks.
+    /// What the colours show: quantity, unit, range and ticks. Values beyond its ends have the colour of the end.
     pub scale: Axis,
     /// Rectangles (left, bottom, right, top) in the units of the axes, with their values, from the
-    /// bottom left upwards.
+    /// bottom left upwards. NaN leaves a cell empty.
     pub values: Vec<((f64, f64, f64, f64), f64)>,
+    /// Whether each cell bears its value.
+    pub numbered: bool,
+    /// Whether a bar of the colours stands beside the panel.
+    pub bar: bool,
+    /// What an infinite value means, under the bar; the cell is grey.
+    pub infinite: Option<String>,
+}
+
+impl Cells {
+    /// Cells that bear their values, with a bar of their colours beside them.
+    #[must_use]
+    pub fn new(scale: Axis, values: Vec<((f64, f64, f64, f64), f64)>) -> Self {
+        Self { scale, values, numbered: true, bar: true, infinite: None }
+    }
 }
 
 #[cfg(test)]

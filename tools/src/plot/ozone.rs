@@ -60,7 +60,7 @@ pub(super) fn latitudes(data: Data<'_>) -> Result<Plot, PlotError> {
     let month_names = (1..=12).zip(MONTHS).map(|(m, name)| (f64::from(m), name.chars().take(3).collect())).collect();
     let degrees = (-3..=3).map(|i| (f64::from(30 * i), latitude(f64::from(30 * i)))).collect();
     let panel = Panel {
-        cells: Some(Cells { scale: Axis::linear("ozone column / DU", 150.0, 450.0, 50.0), values }),
+        cells: Some(Cells::new(Axis::linear("ozone column / DU", 150.0, 450.0, 50.0), values)),
         ..Panel::new(
             Axis::linear("month", 0.5, 12.5, 1.0).named(month_names),
             Axis::linear("latitude", -90.0, 90.0, 30.0).named(degrees),

@@ -69,7 +69,7 @@ fn reduced(fine: &[u8]) -> Vec<u8> {
 mod tests {
     use super::*;
     use crate::plot::colours::BLUE;
-    use crate::plot::model::{Axis, Curve, Panel};
+    use crate::plot::model::{Axis, Cells, Curve, Panel};
 
     fn figure() -> Figure {
         let curve = Curve::new("a line", BLUE, vec![(0.0, 0.0), (1.0, 1.0)]);
@@ -87,6 +87,31 @@ mod tests {
         let white = pixels.iter().filter(|&&v| v == 255).count() as f64 / pixels.len() as f64;
         assert!((0.9..0.999).contains(&white), "{white} of it is white");
         assert_eq!(bytes, png(&figure()).expect("drawn"));
+    }
+
+    #[test]
+    fn joined_maps_share_labels_and_bar_and_show_what_is_infinite() {
+        let values = vec![((0.0, 0.0, 1.0, 1.0), 1.0), ((1.0, 0.0, 2.0, 1.0), f64::INFINITY)];
+        let map = |label: &str, name: &str, bar: bool| {
+            let scale = Axis::linear("shade", 0.0, 2.0, 1.0);
+            let infinite = Some("beyond".to_owned());
+            let cells = Cells { numbered: false, bar, infinite, ..Cells::new(scale, values.clone()) };
+            let y = Axis::linear(label, 0.0, 1.0, 1.0).named(vec![(0.5, name.into())]);
+            Panel { cells: Some(cells), ..Panel::new(Axis::linear("x", 0.0, 2.0, 1.0), y, Vec::new()) }
+        };
+        let rows = vec![vec![map("kind", "a very long name", false), map("", "", true)]];
+        let text = String::from_utf8(svg(&Figure { title: String::new(), rows }).expect("drawn")).expect("UTF-8");
+        let count = |part: &str| text.matches(part).count();
+        assert_eq!([count("a very long name"), count("shade"), count("beyond")], [1, 1, 1]);
+        // The infinite cell of each map and the sample under the bar are filled with the grey of the key.
+        assert_eq!(count("#787878"), 3);
+        // Equal cells are equally wide in both.
+        let widths: Vec<&str> = text
+            .lines()
+            .filter(|line| line.starts_with("<rect") && line.contains("#787878"))
+            .filter_map(|line| line.split("width=\"").nth(1)?.split('"').next())
+            .collect();
+        assert_eq!(widths[0], widths[1], "{widths:?}");
     }
 
     #[test]

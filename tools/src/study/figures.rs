@@ -1,21 +1,22 @@
 //! Figures of the studies, from their numbers.
 
-use super::Name;
+use super::{Name, Part, mie_stability};
 use crate::frame::Frame;
 use crate::plot::colours::{BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION};
 use crate::plot::model::{Axis, Curve, Figure, Key, Panel, Stroke};
 use polars::prelude::PolarsError;
 use tables::units::KM;
 
-/// The figure of a study, from what [`super::make`] gave.
+/// The figure of a part of a study, from what [`super::make`] gave.
 ///
 /// # Errors
 /// [`PolarsError`] if the numbers are of another study.
-pub fn figure(name: Name, frame: &Frame) -> Result<Figure, PolarsError> {
+pub fn figure(name: Name, part: &Part) -> Result<Figure, PolarsError> {
     match name {
-        Name::Rayleigh => rayleigh(frame),
-        Name::Interpolation => interpolation(frame),
-        Name::Thesis => thesis(frame),
+        Name::Rayleigh => rayleigh(&part.frame),
+        Name::Interpolation => interpolation(&part.frame),
+        Name::Thesis => thesis(&part.frame),
+        Name::MieStability => mie_stability::figure(part),
     }
 }
 

@@ -1,11 +1,12 @@
 //! Studies: how far numbers that should agree do not.
 //!
-//! A study computes from `raw-data/` and in memory; nothing else in Airlight uses what it finds.
-//! The `figure` of a study (with the feature `plot`) is drawn from its numbers.
+//! A study computes from `raw-data/` or from reference values that the program carries, and in memory; nothing else in
+//! Airlight uses what it finds. The figures of a study (with the feature `plot`) are drawn from its numbers.
 
 #[cfg(feature = "plot")]
 mod figures;
 mod interpolation;
+mod mie_stability;
 mod rayleigh;
 mod thesis;
 
@@ -13,6 +14,7 @@ mod thesis;
 pub use figures::figure;
 
 use crate::frame::Frame;
+use crate::mie::MieError;
 use crate::raw::RawError;
 use polars::prelude::PolarsError;
 use std::path::{Path, PathBuf};
@@ -27,6 +29,17 @@ pub enum StudyError {
     /// A value cannot be computed.
     #[error(transparent)]
     Table(#[from] TableError),
+    /// A reference value that the program carries cannot be used.
+    #[error("reference values {file}: {reason}")]
+    Reference {
+        /// The file, among those of the tests.
+        file: &'static str,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A sphere cannot be solved.
+    #[error(transparent)]
+    Mie(#[from] MieError),
     /// The numbers make no CSV.
     #[error("numbers of a study: {0}")]
     Frame(#[from] PolarsError),
@@ -53,11 +66,13 @@ pub enum Name {
     Interpolation,
     /// Ozone and air of the thesis' code against those of the tables.
     Thesis,
+    /// Classical algorithms and limits of Mie scattering against arbitrary precision.
+    MieStability,
 }
 
 impl Name {
     /// Every study.
-    pub const ALL: [Self; 3] = [Self::Rayleigh, Self::Interpolation, Self::Thesis];
+    pub const ALL: [Self; 4] = [Self::Rayleigh, Self::Interpolation, Self::Thesis, Self::MieStability];
 
     /// The name by which it is asked for; its files are called `study-NAME`.
     #[must_use]
@@ -66,7 +81,33 @@ impl Name {
             Self::Rayleigh => "rayleigh",
             Self::Interpolation => "interpolation",
             Self::Thesis => "thesis",
+            Self::MieStability => "mie-stability",
         }
+    }
+}
+
+/// What a study gives.
+#[derive(Debug, Clone)]
+pub struct Results {
+    /// Numbers, each with a figure of its own.
+    pub parts: Vec<Part>,
+    /// Lines in words, where the numbers lead to a verdict.
+    pub remarks: Vec<String>,
+}
+
+/// Numbers of a study that one figure shows.
+#[derive(Debug, Clone)]
+pub struct Part {
+    /// What tells its files from those of the other parts; empty where there is but one.
+    pub name: &'static str,
+    /// The numbers.
+    pub frame: Frame,
+}
+
+impl From<Frame> for Results {
+    /// A study of one part that says all.
+    fn from(frame: Frame) -> Self {
+        Self { parts: vec![Part { name: "", frame }], remarks: Vec::new() }
     }
 }
 
@@ -75,37 +116,46 @@ impl Name {
 ///
 /// # Errors
 /// [`StudyError`].
-pub fn make(name: Name, raw_dir: &Path) -> Result<Frame, StudyError> {
+pub fn make(name: Name, raw_dir: &Path) -> Result<Results, StudyError> {
     match name {
-        Name::Rayleigh => rayleigh::compare(raw_dir),
-        Name::Interpolation => interpolation::at_half_nodes(raw_dir),
-        Name::Thesis => thesis::compare(raw_dir),
+        Name::Rayleigh => rayleigh::compare(raw_dir).map(Results::from),
+        Name::Interpolation => interpolation::at_half_nodes(raw_dir).map(Results::from),
+        Name::Thesis => thesis::compare(raw_dir).map(Results::from),
+        Name::MieStability => mie_stability::compare(),
     }
 }
 
-/// Writes `study-NAME.csv` to a folder, which is made if it is not there, and with the feature `plot`
-/// the figure as SVG and PNG. Gives the paths.
+/// Writes `study-NAME.csv`, or `study-NAME-PART.csv` of each part where there are several, to a folder, which is made if it
+/// is not there, and with the feature `plot` the figure as SVG and PNG. Gives the paths.
 ///
 /// # Errors
 /// [`StudyError`].
-pub fn write(name: Name, frame: &Frame, folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
-    let stem = format!("study-{}", name.as_str());
-    #[cfg(feature = "plot")]
-    {
-        let plot = crate::plot::Plot { figure: figure(name, frame)?, frame: frame.clone() };
-        Ok(crate::plot::write(&plot, &stem, folder)?.into())
+pub fn write(name: Name, results: &Results, folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
+    let mut paths = Vec::new();
+    for part in &results.parts {
+        let stem =
+            ["study", name.as_str(), part.name].into_iter().filter(|s| !s.is_empty()).collect::<Vec<_>>().join("-");
+        paths.extend(write_part(name, part, &stem, folder)?);
     }
-    #[cfg(not(feature = "plot"))]
-    {
-        let failed = |path: &Path| {
-            let path = path.to_path_buf();
-            move |source| StudyError::Write { path, source }
-        };
-        std::fs::create_dir_all(folder).map_err(failed(folder))?;
-        let path = folder.join(format!("{stem}.csv"));
-        tables::file::replace(&path, &frame.csv()?).map_err(failed(&path))?;
-        Ok(vec![path])
-    }
+    Ok(paths)
+}
+
+#[cfg(feature = "plot")]
+fn write_part(name: Name, part: &Part, stem: &str, folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
+    let plot = crate::plot::Plot { figure: figure(name, part)?, frame: part.frame.clone() };
+    Ok(crate::plot::write(&plot, stem, folder)?.into())
+}
+
+#[cfg(not(feature = "plot"))]
+fn write_part(_: Name, part: &Part, stem: &str, folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
+    let failed = |path: &Path| {
+        let path = path.to_path_buf();
+        move |source| StudyError::Write { path, source }
+    };
+    std::fs::create_dir_all(folder).map_err(failed(folder))?;
+    let path = folder.join(format!("{stem}.csv"));
+    tables::file::replace(&path, &part.frame.csv()?).map_err(failed(&path))?;
+    Ok(vec![path])
 }
 
 /// A frame of columns of different lengths: the shorter end in gaps.
