@@ -2,7 +2,7 @@
 """Times Airlight's Mie solver beside others in one run, on one core, and writes a row for each as CSV.
 
     cargo build --release -p tools --example scatrs_tasks --bin airlight-tools
-    python3 tools/benches/mie_peers.py --bin target/release --out plots/mie-peers.csv
+    python3 tools/benches/mie_peers.py --bin target/release --reference REFERENCE.npz --out raw-data/mie-peers/speed.csv
 
 Needs numpy; solvers that are not installed (pip install miepython numba sasktran2 PyMieScatt) are left out and named.
 PyMieScatt wants an older Python stack: --old PYTHON names an interpreter that has it.
@@ -203,7 +203,19 @@ def main():
     cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "")
     flags = next((line for line in open("/proc/cpuinfo") if line.startswith("flags")), "")
     widest = "AVX-512" if "avx512f" in flags else "AVX2" if "avx2" in flags else "SSE2"
-    lines = [f"# one run, one core: {cpu} ({widest}), {platform.system()}", "solver,task,spheres_per_second,largest_relative_error"]
+    lines = [
+        "# title: Speed and error of Mie solvers",
+        "# citation: measured by tools/benches/mie_peers.py, which says what the tasks are",
+        f"# source: one run, one core of {cpu} ({widest}), {platform.system()}",
+        f"# retrieved: {time.strftime('%Y-%m-%d')}",
+        "# licence: same as Airlight",
+        "# changes: none",
+        "# unit solver: text",
+        "# unit task: text",
+        "# unit spheres_per_second: s^-1",
+        "# unit largest_relative_error: 1",
+        "solver,task,spheres_per_second,largest_relative_error",
+    ]
     for name, tasks in found.items():
         for task, row in tasks.items():
             error = "" if row["error"] is None else f"{row['error']:.2g}"

@@ -24,6 +24,24 @@ impl Frame {
         Ok(Self(DataFrame::new_infer_height(columns.collect())?))
     }
 
+    /// The same frame with a column of texts in front.
+    ///
+    /// # Errors
+    /// [`PolarsError`] if the length differs or the name is taken.
+    pub fn named(self, name: &str, texts: Vec<String>) -> Result<Self, PolarsError> {
+        let mut columns = vec![Column::new(name.into(), texts)];
+        columns.extend(self.0.columns().iter().cloned());
+        Ok(Self(DataFrame::new_infer_height(columns)?))
+    }
+
+    /// The texts of a column.
+    ///
+    /// # Errors
+    /// [`PolarsError`] if there is no such column, or it holds numbers.
+    pub fn texts(&self, name: &str) -> Result<Vec<String>, PolarsError> {
+        Ok(self.0.column(name)?.str()?.iter().map(|text| text.unwrap_or_default().to_owned()).collect())
+    }
+
     /// The columns.
     #[must_use]
     pub fn data(&self) -> &DataFrame {

@@ -12,6 +12,7 @@ pub mod aerosol_opac;
 pub mod bucholtz;
 pub mod cie_1931;
 pub mod ground_albedo;
+pub mod mie_peers;
 pub mod ozone_arosa;
 pub mod ozone_mcpeters_labow;
 pub mod ozone_serdyuchenko;

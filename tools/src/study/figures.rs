@@ -2,8 +2,8 @@
 
 use super::{Name, Part, mie_stability};
 use crate::frame::Frame;
-use crate::plot::colours::{BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION};
-use crate::plot::model::{Axis, Curve, Figure, Key, Panel, Stroke};
+use crate::plot::colours::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION};
+use crate::plot::model::{Axis, Colour, Curve, Figure, Key, Panel, Stroke};
 use polars::prelude::PolarsError;
 use tables::units::KM;
 
@@ -17,6 +17,7 @@ pub fn figure(name: Name, part: &Part) -> Result<Figure, PolarsError> {
         Name::Interpolation => interpolation(&part.frame),
         Name::Thesis => thesis(&part.frame),
         Name::MieStability => mie_stability::figure(part),
+        Name::MieSpeed => mie_speed(part),
     }
 }
 
@@ -130,4 +131,34 @@ fn thesis(frame: &Frame) -> Result<Figure, PolarsError> {
     .key(Key::None);
     let title = "What the thesis' code had, beside what the tables are made from".into();
     Ok(Figure { title, rows: vec![vec![profiles, sections.share(1.2), air.share(0.9)]] })
+}
+
+/// Speed against error: each peer with a mark of its own, the variants alike, and the front.
+fn mie_speed(part: &Part) -> Result<Figure, PolarsError> {
+    const COLOURS: [Colour; 7] = [BLUE, SKY, BLACK, VERMILION, ORANGE, PURPLE, GREEN];
+    let solvers = part.frame.texts("solver")?;
+    let found = points(&part.frame, ("spheres_per_second", 1.0), ("largest_relative_error", 1.0))?;
+    let front = part.frame.column("on_pareto_front")?;
+    let mut line: Vec<(f64, f64)> = found.iter().zip(&front).filter(|(_, on)| **on > 0.0).map(|(p, _)| *p).collect();
+    line.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut curves = vec![Curve::new("Pareto front", GREY, line).stroke(Stroke::Dashed)];
+    let (variants, peers): (Vec<_>, Vec<_>) =
+        solvers.iter().zip(found).partition(|(solver, _)| solver.starts_with("variant"));
+    if !variants.is_empty() {
+        let points = variants.into_iter().map(|(_, point)| point).collect();
+        curves.push(Curve::new("classical variants", GREY, points).stroke(Stroke::Marks));
+    }
+    for ((solver, point), colour) in peers.into_iter().zip(COLOURS.into_iter().cycle()) {
+        curves.push(Curve::new(solver, colour, vec![point]).stroke(Stroke::Marks));
+    }
+    let panel = Panel::new(
+        Axis::logarithmic("spheres per second on one core", 1e2, 1e7, 1),
+        Axis::logarithmic("largest relative error", 1e-15, 10.0, 2),
+        curves,
+    );
+    let what = match part.name {
+        "spheres" => "Mie solvers: 1000 spheres, x from 0.01 to 1000, m = 1.5 + 0.01i",
+        _ => "Mie solvers: two size distributions, 61 wavelengths, 181 angles",
+    };
+    Ok(Figure { title: what.into(), rows: vec![vec![panel.key(Key::Beside)]] })
 }

@@ -6,6 +6,7 @@
 #[cfg(feature = "plot")]
 mod figures;
 mod interpolation;
+mod mie_speed;
 mod mie_stability;
 mod rayleigh;
 mod thesis;
@@ -68,11 +69,13 @@ pub enum Name {
     Thesis,
     /// Classical algorithms and limits of Mie scattering against arbitrary precision.
     MieStability,
+    /// Speed against error of Mie solvers.
+    MieSpeed,
 }
 
 impl Name {
     /// Every study.
-    pub const ALL: [Self; 4] = [Self::Rayleigh, Self::Interpolation, Self::Thesis, Self::MieStability];
+    pub const ALL: [Self; 5] = [Self::Rayleigh, Self::Interpolation, Self::Thesis, Self::MieStability, Self::MieSpeed];
 
     /// The name by which it is asked for; its files are called `study-NAME`.
     #[must_use]
@@ -82,6 +85,7 @@ impl Name {
             Self::Interpolation => "interpolation",
             Self::Thesis => "thesis",
             Self::MieStability => "mie-stability",
+            Self::MieSpeed => "mie-speed",
         }
     }
 }
@@ -122,6 +126,7 @@ pub fn make(name: Name, raw_dir: &Path) -> Result<Results, StudyError> {
         Name::Interpolation => interpolation::at_half_nodes(raw_dir).map(Results::from),
         Name::Thesis => thesis::compare(raw_dir).map(Results::from),
         Name::MieStability => mie_stability::compare(),
+        Name::MieSpeed => mie_speed::measure(raw_dir),
     }
 }
 

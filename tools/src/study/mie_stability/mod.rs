@@ -14,10 +14,13 @@ mod limits;
 mod reference;
 #[cfg(test)]
 mod tests;
+mod timing;
 mod variants;
 
 #[cfg(feature = "plot")]
 pub(super) use figure::figure;
+
+pub(super) use timing::{Timed, timed};
 
 use super::{Part, Results, StudyError};
 use crate::frame::Frame;

@@ -52,9 +52,8 @@ pub(super) struct Variant {
 }
 
 impl Variant {
-    /// What the variant finds; NaN for what a limit does not have or where it is not meant.
-    pub(super) fn solve(&self, sphere: &Sphere) -> Result<Optics, MieError> {
-        let Sphere { x, n, k, .. } = *sphere;
+    /// What the variant finds at the size parameter `x` and index n + ik; NaN for what a limit does not have or where it is not meant.
+    pub(super) fn solve(&self, x: f64, (n, k): (f64, f64)) -> Result<Optics, MieError> {
         match self.method {
             Method::Double(recipe) => Ok(recipe.solve::<f64>(x, (n, k))),
             Method::Single(recipe) => Ok(recipe.solve::<f32>(x, (n, k))),
@@ -102,7 +101,7 @@ impl Variant {
     /// Relative errors of all quantities: infinite for what is no number, NaN for what the variant does not have, where it
     /// is not meant, and for absorption by a sphere that does not absorb.
     pub(super) fn errors(&self, sphere: &Sphere) -> Result<Errors, MieError> {
-        let (found, exact) = (self.solve(sphere)?, &sphere.exact);
+        let (found, exact) = (self.solve(sphere.x, (sphere.n, sphere.k))?, &sphere.exact);
         let meant = match self.method {
             Method::Limit(_) => found.extinction.is_finite(),
             Method::Double(_) | Method::Single(_) | Method::Ours => true,
