@@ -141,7 +141,7 @@ fn change(bytes: &mut Vec<u8>, other: &[u8], text: bool, dice: &mut Dice) {
             5 => {
                 // A part twice or many times over.
                 let span = dice.span(bytes.len(), 256);
-                let room = if dice.one_in(8) { 1 << 18 } else { 1 << 10 };
+                let room = if dice.one_in(32) { 1 << 18 } else { 1 << 10 };
                 let times = 1 + dice.below(room / span.len().max(1) + 1);
                 let copy = bytes[span.clone()].repeat(times);
                 bytes.splice(span.end..span.end, copy);
@@ -177,7 +177,8 @@ fn change(bytes: &mut Vec<u8>, other: &[u8], text: bool, dice: &mut Dice) {
                 // A long field, or many empty ones, or deep nesting.
                 let at = dice.below(bytes.len() + 1);
                 let piece = dice.pick(&["9", "x", ",", "[", "{\"a\":", "0,", "\n", "#:\n", "\"", "é"]);
-                let times = 1 + dice.length(1 << 18) / piece.len();
+                let most = if dice.one_in(16) { 1 << 18 } else { 1 << 10 };
+                let times = 1 + dice.length(most) / piece.len();
                 bytes.splice(at..at, piece.repeat(times).into_bytes());
             }
             14 => {

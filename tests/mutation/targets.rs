@@ -94,7 +94,9 @@ pub fn targets() -> Vec<Target> {
     let spheres = "id,x,m_re,m_im\n1,0.1,1.5,-0.01\n\"a,b\",1e3,1.33,0\n";
     add("mie cases", Form::Text, true, vec![spheres.into()], mie_cases);
     let scenes = ["clear-noon", "desert-dusk", "limb"].map(|name| file(&format!("scenes/{name}.json")));
-    let full = Scene { width: Some(8), aod: Some(0.2), ..Scene::default() }.to_json().into_bytes();
+    let full = Scene { width: Some(8), biome: Some(views::Biome::Urban), aod: Some(0.2), ..Scene::default() }
+        .to_json()
+        .into_bytes();
     add("scene", Form::Text, true, scenes.into_iter().chain([full.clone()]).collect(), scene);
     let picture =
         [b"\x76\x2f\x31\x01\x02\0\0\0compression\0compression\0\x01\0\0\0\x03", b"airlight.scene\0string\0".as_slice()];
