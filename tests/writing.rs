@@ -146,7 +146,7 @@ fn kill(mut run: Child, folder: &Path, normal: Duration, dice: &mut Sampler) -> 
         std::thread::sleep(normal.mul_f64(share));
     } else {
         let new = |name: String| name.contains(".tmp-") && !before.contains(&name);
-        while start.elapsed() < 4 * normal && !names(folder).into_iter().any(new) {}
+        while start.elapsed() < normal * 4 && !names(folder).into_iter().any(new) {}
         std::thread::sleep(Duration::from_micros((2000.0 * share * share) as u64));
     }
     let _ = run.kill(); // SIGKILL; fails only if the program has ended
@@ -162,13 +162,13 @@ fn a_kill_at_any_moment_leaves_the_old_file_the_new_one_or_none() {
     for sub in ["data", "plots", "mie", "sky"] {
         std::fs::create_dir_all(at(sub)).expect("made");
     }
+    let (mie, sky) = (at("mie"), at("sky"));
     let commands: [(&Path, Vec<&str>); 4] = [
-        (&data, vec!["airlight-tools", "build", "--only", "ozone-profiles", "--data", text(&data)]),
-        (&plots, vec!["airlight-tools", "plot", "ozone-months", "--out", text(&plots)]),
-        (&at("mie"), vec!["airlight-tools", "mie", "--cases", text(&cases), "--out", text(&csv)]),
-        (&at("sky"), vec!["airlight", "render", "--width", "64", "--height", "64", "--spp", "1", "-o", text(&exr)]),
-    ]
-    .map(|(folder, words)| (folder, words));
+        (data.as_path(), vec!["airlight-tools", "build", "--only", "ozone-profiles", "--data", text(&data)]),
+        (mie.as_path(), vec!["airlight-tools", "mie", "--cases", text(&cases), "--out", text(&csv)]),
+        (sky.as_path(), vec!["airlight", "render", "--width", "64", "--height", "64", "--spp", "1", "-o", text(&exr)]),
+        (plots.as_path(), vec!["airlight-tools", "plot", "ozone-months", "--out", text(&plots)]),
+    ];
     let mut dice = Sampler::new(1, 0, 0);
     let (mut kills, rounds) = (0, from_environment("AIRLIGHT_ROUNDS", 6));
     for (folder, words) in commands {
