@@ -114,7 +114,10 @@ fn read<V>(folder: &Path, file: String, view: fn(&Table) -> Result<V, TableError
     };
     let named = |error: TableError| error.at(&path);
     let table = decode(&bytes).map_err(named)?;
-    let seen = view(&table).map_err(named)?;
     // A file that decodes has a checksum.
-    Ok((seen, Identity { file, title: table.title, checksum: checksum(&bytes).unwrap_or_default() }))
+    let checksum = checksum(&bytes).unwrap_or_default();
+    // Now that the table is read the file need not stay in memory while the view is made.
+    drop(bytes);
+    let seen = view(&table).map_err(named)?;
+    Ok((seen, Identity { file, title: table.title, checksum }))
 }

@@ -11,6 +11,7 @@
 mod axis;
 mod curve;
 mod error;
+mod excerpt;
 pub mod file;
 mod table;
 pub mod units;
@@ -19,4 +20,5 @@ pub mod views;
 pub use axis::{Axis, Interpolation, Outside, Position, Spacing};
 pub use curve::Curve;
 pub use error::TableError;
+pub use excerpt::excerpt;
 pub use table::{Field, Kind, Precision, Provenance, Scale, Table, Tolerance};

@@ -18,5 +18,6 @@ pub mod molecular;
 pub mod plot;
 pub mod profile;
 pub mod raw;
+pub mod records;
 #[cfg(feature = "study")]
 pub mod study;

@@ -1,6 +1,7 @@
 //! `airlight render`.
 
 use super::args::RenderArgs;
+use super::output::{eprintln, println};
 use super::progress::{Line, amount, duration, percent, size};
 use super::{Failure, Outcome};
 use crate::data::Data;
@@ -76,9 +77,9 @@ fn read_scene(path: &Path) -> Result<Scene, Failure> {
         let found = exr::text_attribute(&bytes, receipt::SCENE).map_err(|error| Failure::usage(at(&error)))?;
         found.ok_or_else(|| Failure::usage(at(&"a picture that carries no scene")))?
     } else {
-        String::from_utf8(bytes).map_err(|error| Failure::usage(at(&error)))?
+        std::str::from_utf8(&bytes).map_err(|error| Failure::usage(at(&error)))?
     };
-    Scene::from_json(&json).map_err(|error| Failure::usage(at(&error)))
+    Scene::from_json(json).map_err(|error| Failure::usage(at(&error)))
 }
 
 fn has_extension(path: &Path, wanted: &str) -> bool {
@@ -102,17 +103,16 @@ impl Files {
             return Err(Failure::usage(format!("{}: there is no such folder to write to", folder.display())));
         }
         // Better now than after the work.
-        let probe = exr.with_extension(format!("tmp-{}", std::process::id()));
-        std::fs::File::create(&probe)
-            .and_then(|_| std::fs::remove_file(&probe))
-            .map_err(|error| Failure::error(format!("{}: cannot be written: {error}", exr.display())))?;
-        Ok(Self { exr: exr.into(), png: exr.with_extension("png") })
+        let files = Self { exr: exr.into(), png: exr.with_extension("png") };
+        for path in [&files.exr, &files.png] {
+            tables::file::check_writable(path).map_err(|error| super::unwritable(path, &error))?;
+        }
+        Ok(files)
     }
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    tables::file::replace(path, bytes)
-        .map_err(|error| Failure::error(format!("{}: cannot be written: {error}", path.display())))
+    tables::file::replace(path, bytes).map_err(|error| super::unwritable(path, &error))
 }
 
 /// A flag that Ctrl-C sets; a second Ctrl-C ends the program at once.

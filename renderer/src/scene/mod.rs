@@ -16,7 +16,8 @@ use crate::data::Data;
 use crate::spectrum::Wavelengths;
 use crate::transport::Method;
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
+use serde::de::Visitor;
+use serde::{Deserialize, Deserializer, Serialize};
 use std::str::FromStr;
 use tables::units::{EARTH_RADIUS_M, KM};
 use tables::views::{AerosolSource, Biome};
@@ -95,7 +96,7 @@ pub struct Scene {
 }
 
 /// What the ground reflects: Lambertian.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Albedo {
     /// The same at every wavelength, 0 to 1.
@@ -249,6 +250,37 @@ impl Scene {
 fn horizon_dip(altitude_m: f64) -> f64 {
     let radius = EARTH_RADIUS_M + altitude_m;
     ((altitude_m * (EARTH_RADIUS_M + radius)).sqrt() / radius).asin()
+}
+
+/// A number is grey, a string the name of a ground. (Derived, it would keep whatever else stands there in memory.)
+impl<'de> Deserialize<'de> for Albedo {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct NumberOrName;
+        impl Visitor<'_> for NumberOrName {
+            type Value = Albedo;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a reflectance or the name of a ground")
+            }
+
+            fn visit_f64<E>(self, value: f64) -> Result<Albedo, E> {
+                Ok(Albedo::Grey(value))
+            }
+
+            fn visit_u64<E>(self, value: u64) -> Result<Albedo, E> {
+                Ok(Albedo::Grey(value as f64))
+            }
+
+            fn visit_i64<E>(self, value: i64) -> Result<Albedo, E> {
+                Ok(Albedo::Grey(value as f64))
+            }
+
+            fn visit_str<E>(self, name: &str) -> Result<Albedo, E> {
+                Ok(Albedo::Ground(name.into()))
+            }
+        }
+        from.deserialize_any(NumberOrName)
+    }
 }
 
 /// A number is grey, anything else the name of a ground.

@@ -18,6 +18,7 @@ pub enum CameraKind {
 pub(crate) mod word {
     use super::nearest;
     use serde::{Deserialize, Deserializer, Serializer};
+    use tables::excerpt;
     use tables::views::{AerosolSource, Biome};
 
     /// What stands for no aerosol.
@@ -39,10 +40,11 @@ pub(crate) mod word {
     }
 
     fn unknown(what: &str, name: &str, known: impl IntoIterator<Item = &'static str> + Clone) -> String {
+        let found = excerpt(name);
         match nearest(name, known.clone()) {
-            Some(near) => format!("{what} {name:?} is not known; did you mean {near}?"),
+            Some(near) => format!("{what} {found:?} is not known; did you mean {near}?"),
             None => {
-                format!("{what} {name:?} is not known; known are {}", Vec::from_iter(known).join(", "))
+                format!("{what} {found:?} is not known; known are {}", Vec::from_iter(known).join(", "))
             }
         }
     }
@@ -74,9 +76,15 @@ pub(crate) mod word {
     }
 }
 
-/// The known name nearest to `name` (Jaro-Winkler similarity of at least 0.7).
+/// The most bytes of a name that can be a slip of a known one.
+const MAX_NAME: usize = 100;
+
+/// The known name nearest to `name` (Jaro-Winkler similarity of at least 0.7); none is near to what is no name.
 #[must_use]
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    if name.len() > MAX_NAME {
+        return None;
+    }
     let name = name.to_lowercase();
     known
         .into_iter()

@@ -3,7 +3,7 @@
 use super::{Albedo, CameraKind, Scene, nearest};
 use crate::film::Film;
 use crate::spectrum::SpectrumError;
-use tables::TableError;
+use tables::{TableError, excerpt};
 
 /// The largest width and height in pixels.
 const MAX_SIZE: f64 = 16_384.0;
@@ -53,7 +53,7 @@ pub enum SceneError {
         source: TableError,
     },
     /// Text that is no scene.
-    #[error("not a scene: {0}")]
+    #[error("not a scene: {}", excerpt(&.0.to_string()))]
     Malformed(#[from] serde_json::Error),
 }
 
@@ -68,7 +68,7 @@ impl SceneError {
             Some(near) => format!("; did you mean {near}?"),
             None => format!("; known are {}", known.into_iter().collect::<Vec<_>>().join(", ")),
         };
-        Self::Unknown { what, name: name.into(), hint }
+        Self::Unknown { what, name: excerpt(name), hint }
     }
 }
 

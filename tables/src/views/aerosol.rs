@@ -1,8 +1,9 @@
 //! Aerosol: what there is in each biome, how much of it where, and how it scatters and absorbs.
 
 use super::{WAVELENGTH, bounded, scalar};
-use crate::{Axis, Curve, Field, Interpolation, Kind, Outside, Table, TableError};
+use crate::{Axis, Curve, Field, Interpolation, Kind, Outside, Table, TableError, excerpt};
 use std::fmt;
+use std::sync::Arc;
 
 /// The axis of the cosine of the scattering angle, from -1 (backward) to 1 (forward).
 pub const COSINE: (&str, &str) = ("cosine", "1");
@@ -127,9 +128,9 @@ pub struct Species {
     pub number_density_m3: Curve,
     /// Relative humidity in percent at which it is by default.
     pub default_humidity_percent: f64,
-    wavelength: Axis,
+    wavelength: Arc<Axis>,
     humidity: Axis,
-    cosine: Axis,
+    cosine: Arc<Axis>,
     extinction: Field,
     scattering: Field,
     asymmetry: Field,
@@ -190,10 +191,14 @@ impl Aerosol {
             let missing = || TableError::Missing { what: "setting", name: key.into(), kind: table.kind.to_string() };
             table.settings.get(key).map(String::as_str).ok_or_else(missing)
         };
-        let unknown = |key: &str, name: &str| TableError::Inconsistent(format!("no {key} is called {name:?}"));
+        let unknown =
+            |key: &str, name: &str| TableError::Inconsistent(format!("no {key} is called {:?}", excerpt(name)));
         let (biome, source) = (setting("biome")?, setting("source")?);
         let names = table.fields.iter().filter_map(|field| field.name.strip_suffix(suffix::NUMBER_DENSITY));
-        let species = names.map(|name| Species::from_table(table, name)).collect::<Result<Vec<_>, _>>()?;
+        let shared = |(name, unit)| refusing_axis(table, name, unit).map(|axis| Arc::new(axis.clone()));
+        let (wavelength, cosine) = (shared(WAVELENGTH)?, shared(COSINE)?);
+        let species = names.map(|name| Species::from_table(table, name, &wavelength, &cosine));
+        let species = species.collect::<Result<Vec<_>, _>>()?;
         if species.is_empty() {
             return Err(TableError::Inconsistent("no species".into()));
         }
@@ -237,8 +242,17 @@ impl Aerosol {
     }
 }
 
+/// An axis of the optics: in `unit`, linear, refusing outside.
+fn refusing_axis<'a>(table: &'a Table, name: &str, unit: &str) -> Result<&'a Axis, TableError> {
+    let axis = table.axis(name)?;
+    if axis.unit == unit && axis.outside == Outside::Error && axis.interpolation == Interpolation::Linear {
+        return Ok(axis);
+    }
+    Err(TableError::Inconsistent(format!("axis {name:?} must be in {unit:?}, linear, and refuse outside")))
+}
+
 impl Species {
-    fn from_table(table: &Table, name: &str) -> Result<Self, TableError> {
+    fn from_table(table: &Table, name: &str, wavelength: &Arc<Axis>, cosine: &Arc<Axis>) -> Result<Self, TableError> {
         let full = |end: &str| format!("{name}{end}");
         let (altitude, humidity) = (full(suffix::ALTITUDE), full(suffix::HUMIDITY));
         let spectral = |end: &str, unit: &str| -> Result<Field, TableError> {
@@ -248,20 +262,13 @@ impl Species {
         if density.axis().outside != Outside::Zero {
             return Err(TableError::Inconsistent(format!("axis {altitude:?} must be zero outside")));
         }
-        let axis = |name: &str, unit: &str| -> Result<Axis, TableError> {
-            let axis = table.axis(name)?;
-            if axis.unit == unit && axis.outside == Outside::Error && axis.interpolation == Interpolation::Linear {
-                return Ok(axis.clone());
-            }
-            Err(TableError::Inconsistent(format!("axis {name:?} must be in {unit:?}, linear, and refuse outside")))
-        };
         let species = Self {
             name: name.into(),
             number_density_m3: bounded(density, name, 0.0, 1e13)?,
             default_humidity_percent: scalar(table, &full(suffix::DEFAULT_HUMIDITY), "percent")?,
-            wavelength: axis(WAVELENGTH.0, WAVELENGTH.1)?,
-            humidity: axis(&humidity, "percent")?,
-            cosine: axis(COSINE.0, COSINE.1)?,
+            wavelength: Arc::clone(wavelength),
+            humidity: refusing_axis(table, &humidity, "percent")?.clone(),
+            cosine: Arc::clone(cosine),
             extinction: spectral(suffix::EXTINCTION, "m^2")?,
             scattering: spectral(suffix::SCATTERING, "m^2")?,
             asymmetry: spectral(suffix::ASYMMETRY, "1")?,

@@ -1,4 +1,5 @@
 use super::*;
+use crate::Scale;
 use crate::{Precision, Tolerance};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;

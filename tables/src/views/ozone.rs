@@ -2,6 +2,7 @@
 
 use super::{ALTITUDE, LATITUDE, MONTH, WAVELENGTH, scalar};
 use crate::{Axis, Curve, Field, Kind, Scale, Table, TableError};
+use std::collections::BTreeMap;
 
 /// Absorption cross-section of ozone, sigma(lambda, T) = s_0 + s_1 (T - T_0) + s_2 (T - T_0)^2.
 ///
@@ -23,13 +24,11 @@ impl OzoneCrossSection {
     /// [`TableError`] if the table is of another kind or lacks a field.
     pub fn from_table(table: &Table) -> Result<Self, TableError> {
         table.expect_kind(Kind::OzoneCrossSection)?;
+        let mut axes = BTreeMap::new();
+        let mut curve = |name: &str, unit: &str| table.curve_sharing(name, unit, WAVELENGTH, &mut axes);
         Ok(Self {
             reference_temperature_k: scalar(table, "reference_temperature", "K")?,
-            coefficients: [
-                table.curve("sigma_0", "m^2", WAVELENGTH)?,
-                table.curve("sigma_1", "m^2 K^-1", WAVELENGTH)?,
-                table.curve("sigma_2", "m^2 K^-2", WAVELENGTH)?,
-            ],
+            coefficients: [curve("sigma_0", "m^2")?, curve("sigma_1", "m^2 K^-1")?, curve("sigma_2", "m^2 K^-2")?],
         })
     }
 

@@ -17,7 +17,11 @@ pub(super) struct MieArgs {
 
 /// Solves the spheres of a file into another.
 pub(super) fn solve(args: &MieArgs) -> Result<(), String> {
-    let input = std::fs::read_to_string(&args.cases).map_err(|e| format!("{}: {e}", args.cases.display()))?;
+    let unwritable = |e: std::io::Error| format!("{}: cannot be written: {e}", args.out.display());
+    let input =
+        std::fs::read_to_string(&args.cases).map_err(|e| format!("{}: cannot be read: {e}", args.cases.display()))?;
+    // Better now than after the work.
+    tables::file::check_writable(&args.out).map_err(unwritable)?;
     let output = mie_cases::solve(&input).map_err(|e| format!("{}: {e}", args.cases.display()))?;
-    std::fs::write(&args.out, output).map_err(|e| format!("{}: {e}", args.out.display()))
+    tables::file::replace(&args.out, output.as_bytes()).map_err(unwritable)
 }
