@@ -3,6 +3,7 @@
 mod aerosol;
 #[cfg(any(feature = "plot", feature = "study"))]
 mod figures;
+mod lint;
 mod mie;
 
 use clap::{Args, Parser, Subcommand};
@@ -34,6 +35,8 @@ enum Command {
     Mie(mie::MieArgs),
     /// The aerosols of data/: extinction, albedo, asymmetry, Angstrom exponent and optical depth of each biome
     Biomes(aerosol::BiomesArgs),
+    /// Find what cannot be right in tables and CSV files: units, swapped columns, impossible values
+    Lint(lint::LintArgs),
     /// Draw what the tables hold: SVG, PNG and CSV of each figure
     #[cfg(feature = "plot")]
     Plot(figures::PlotArgs),
@@ -81,6 +84,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Inspect { file } => show(&file),
         Command::Mie(args) => mie::solve(&args),
         Command::Biomes(args) => aerosol::biomes(&args),
+        Command::Lint(args) => return lint::run(&args),
         #[cfg(feature = "plot")]
         Command::Plot(args) => figures::draw(&args),
         #[cfg(feature = "study")]

@@ -2,7 +2,8 @@
 //!
 //! [`raw`] reads the sources and converts them to SI; [`molecular`] and [`profile`] compute;
 //! [`build`] writes the tables; [`data`] reads them again, [`column`] says what they mean over one place, [`inspect`]
-//! puts one into words; `plot` draws what the tables hold and `study` compares, each behind a feature of its name.
+//! puts one into words, [`lint`] judges tables and CSV files; `plot` draws what the tables hold and `study` compares,
+//! each behind a feature of its name.
 
 pub mod aerosol;
 pub mod build;
@@ -11,6 +12,7 @@ pub mod data;
 #[cfg(any(feature = "plot", feature = "study"))]
 pub mod frame;
 pub mod inspect;
+pub mod lint;
 pub mod mie;
 pub mod mie_cases;
 pub mod molecular;
