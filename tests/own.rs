@@ -1,10 +1,12 @@
 //! From a file of one's own to a picture: the renderer takes each kind of table as its own.
 
 use airlight_tests::{Folder, data, root};
+use renderer::atmosphere::OzoneSource;
 use renderer::render::{Control, RenderError, Rendering, Sky, render};
 use renderer::scene::{Albedo, Scene};
 use renderer::spectrum::Wavelengths;
 use std::sync::atomic::AtomicBool;
+use tables::Kind;
 use tools::own::aerosol::{Index, Modes, OwnAerosol, OwnProfile, OwnSizes};
 use tools::own::{Import, aerosol, albedo, atmosphere, ozone, sun};
 use tools::raw::RawData;
@@ -62,6 +64,31 @@ fn a_sun_of_twice_the_irradiance_makes_twice_the_radiance() {
         (1, "own.table", "Solar irradiance: twice.csv")
     );
     assert!(!sky.identities().iter().any(|identity| identity.file == "sun.table"), "the one it replaces is not used");
+}
+
+#[test]
+fn every_kind_of_table_may_be_an_own_one() {
+    let folder = Folder::new("own-kinds");
+    let path = folder.path().join("own.table");
+    for kind in Kind::ALL.into_iter().filter(|kind| *kind != Kind::GroundAlbedo) {
+        std::fs::copy(root().join("data").join(kind.file_name()), &path).expect("copied");
+        // The layers are taken by their own source alone.
+        let arosa = kind == Kind::OzoneLayers;
+        let ozone_source = if arosa { OzoneSource::Arosa } else { OzoneSource::McPetersLabow };
+        let tables = vec![path.to_str().expect("UTF-8").to_owned()];
+        let scene = Scene { ozone_source, tables, ..Scene::default() };
+        let [own, ours] = [&scene, &without(&scene)].map(|scene| Sky::new(scene, &data()).expect("a sky"));
+        assert_eq!(own.identities().iter().filter(|identity| identity.own && identity.kind == kind).count(), 1);
+        assert_eq!(own.identities().len(), ours.identities().len(), "{kind} comes in place of another");
+        let light = |sky: &Sky| sky.colour().xyz(&sky.direct_irradiance());
+        assert_eq!(light(&own), light(&ours), "{kind}: the same numbers, the same sunlight");
+        if !matches!(kind, Kind::OzoneProfiles | Kind::OzoneLayers) {
+            continue;
+        }
+        let other = if arosa { OzoneSource::McPetersLabow } else { OzoneSource::Arosa };
+        let error = Sky::new(&Scene { ozone_source: other, ..scene }, &data()).expect_err("not taken").to_string();
+        assert!(error.contains("leave one out"), "{error}");
+    }
 }
 
 #[test]

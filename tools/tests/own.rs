@@ -161,6 +161,11 @@ fn soundings_that_cannot_be_are_refused_with_figures() {
         refused(three),
         "sonde.csv, line 2, column \"pressure_pa\": expected N k T = 1.03437e5 Pa within 1 %, found 1.01325e5 Pa"
     );
+    let high = "gph_km,pressure_pa,temperature_k\n117,0.003,340\n118,0.0028,345\n";
+    assert_eq!(
+        refused(high),
+        "sonde.csv, line 3, column \"gph_km\": expected a geopotential altitude of at most 117777 m', found 118000 m'"
+    );
     assert!(refused("altitude_m,temperature_k\n0,288\n1,287\n").contains("one column of pressure or number density"));
 }
 
@@ -454,6 +459,12 @@ fn a_vertical_profile_gives_the_number_at_the_ground_or_only_the_shape() {
     assert!(refused(small(modes("share"), Some(1e20))).contains("number-density is 100000000000000; 0.000001 to"));
     let two = vec![("a".to_owned(), index_of("mineral", 0.0)), ("b".to_owned(), index_of("soot", 0.0))];
     assert!(refused(OwnAerosol { indices: two, ..small(modes("share"), Some(1e9)) }).contains("materials a, b"));
+    let named = Modes::parse("m.csv", b"material,median_radius_um,sigma_g,share\na,0.1,2,1\n", &[]).expect("good");
+    let spare = vec![("a".to_owned(), index_of("mineral", 0.0)), ("b".to_owned(), index_of("soot", 0.0))];
+    let spare = OwnAerosol { indices: spare, ..small(OwnSizes::Modes(named.clone()), Some(1e9)) };
+    assert_eq!(refused(spare), "there is a refractive index of \"b\", but no particles of it");
+    let other = small(OwnSizes::Modes(named), Some(1e9));
+    assert_eq!(refused(other), "material \"a\" has no refractive index; there are dust");
     let high = OwnProfile::Exponential { scale_height: 2000.0, top: 130e3 };
     assert!(refused(OwnAerosol { profile: high, ..small(modes("share"), Some(1e9)) }).contains("top is 130"));
 }

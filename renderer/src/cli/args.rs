@@ -23,7 +23,7 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "DIR", default_value = "data", help_heading = "Files")]
     pub data: PathBuf,
     /// A table of your own (`airlight-tools import`): it replaces, for this picture, the one of its kind in --data, or
-    /// adds a ground for --albedo; may be given more than once, and then once for each kind
+    /// adds a ground for --albedo; once for each kind. Those of the scene are then left out
     #[arg(long = "table", value_name = "FILE", help_heading = "Files")]
     pub tables: Vec<String>,
     /// Write the spectral channels too (S0.550,000nm in W m^-2 sr^-1 nm^-1)

@@ -344,6 +344,10 @@ pub fn table(own: &OwnAerosol) -> Result<Import, OwnError> {
         return Err(OwnError::Refused("an aerosol needs a name of 1 to 64 bytes".into()));
     }
     let (particles, number) = (own.particles()?, own.number()?);
+    let used = |material: &str| particles.iter().any(|(one, _)| one.material == material);
+    if let Some((material, _)) = own.indices.iter().find(|(material, _)| !used(material)) {
+        return Err(OwnError::Refused(format!("there is a refractive index of {material:?}, but no particles of it")));
+    }
     let modes = particles.len();
     let species = SpeciesRecipe {
         name: "aerosol",

@@ -156,13 +156,13 @@ impl<'a> Completed<'a> {
     pub fn new(sounding: &Sounding, standard: &'a StandardAtmosphere) -> Result<Self, OwnError> {
         let mut altitudes = sounding.altitudes.clone();
         if sounding.geopotential {
-            altitudes.iter_mut().for_each(|z| *z = standard.geometric(*z).min(TOP_ALTITUDE_M));
-            if let Some(row) = altitudes.windows(2).position(|pair| pair[0] >= pair[1]) {
+            altitudes.iter_mut().for_each(|z| *z = standard.geometric(*z));
+            if let Some(row) = altitudes.iter().position(|z| *z > TOP_ALTITUDE_M) {
                 let error = sounding.sheet.wrong_at(
-                    row + 1,
+                    row,
                     Quantity::GeopotentialAltitude,
                     format!("a geopotential altitude of at most {:.0} m'", standard.geopotential(TOP_ALTITUDE_M)),
-                    format!("{} m'", sounding.altitudes[row + 1]),
+                    format!("{} m'", sounding.altitudes[row]),
                 );
                 return Err(error.into());
             }
