@@ -213,9 +213,6 @@ fn the_climatology_as_a_sonde_to_30_km_has_its_column_again() {
         let column = trapezoidal(&curve.axis().nodes, curve.values()) / DOBSON_UNIT_M2;
         assert!((column / found.column_du - 1.0).abs() < 1e-12, "{column}");
         assert!(made.notes[0].starts_with(&format!("ozone column {:.2} DU", found.column_du)), "{:?}", made.notes);
-        let scaled = ozone::table(&sonde, &RAW, completion(Some(250.0))).expect("a table").table;
-        let scaled = views::OzoneProfiles::from_table(&scaled).expect("a view").profile(1, 0.0).expect("held");
-        assert!((scaled.column_du - 250.0).abs() < 1e-9, "{}", scaled.column_du);
     }
 }
 
@@ -223,8 +220,12 @@ fn the_climatology_as_a_sonde_to_30_km_has_its_column_again() {
 fn an_ozone_sonde_from_below_the_sea_level_of_the_standard_begins_at_the_ground() {
     let text = "pressure_hpa,ozone_ppbv\n1030,40\n900,45\n100,500\n";
     let sonde = Sonde::parse("sonde.csv", text.as_bytes(), &[]).expect("a good sonde");
-    let made = ozone::table(&sonde, &RAW, completion(None)).expect("a table");
-    let own = views::OzoneProfiles::from_table(&made.table).expect("a view").profile(1, 0.0).expect("held");
+    let profile = |column| {
+        let made = ozone::table(&sonde, &RAW, completion(column)).expect("a table");
+        views::OzoneProfiles::from_table(&made.table).expect("a view").profile(1, 0.0).expect("held")
+    };
+    let (own, scaled) = (profile(None), profile(Some(250.0)));
+    assert!((scaled.column_du - 250.0).abs() < 1e-9, "{}", scaled.column_du);
     let (first, _) = own.number_density_m3.axis().range();
     let ground = own.number_density_m3.at(0.0).expect("inside") / 2.547e25;
     // Between 40 and 45 ppbv, a seventh of the way in altitude (-137 m to 989 m).

@@ -335,6 +335,11 @@ impl OwnAerosol {
     }
 }
 
+/// Six significant digits, for people.
+fn six_digits(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
+
 /// The table of an aerosol: one dry species, with the axes, angles and error estimates of the biomes.
 ///
 /// # Errors
@@ -380,7 +385,7 @@ pub fn table(own: &OwnAerosol) -> Result<Import, OwnError> {
     let notes = vec![
         format!(
             "{} particles per cm3 at the ground, optical depth {:.4} at 550 nm, extinction at the ground {:.4} per km",
-            number * 1e-6,
+            six_digits(number * 1e-6),
             seen.own_optical_depth()?,
             seen.ground_extinction(None, REFERENCE_WAVELENGTH_NM)? * KM
         ),
