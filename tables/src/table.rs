@@ -145,11 +145,11 @@ pub struct Field {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
-    /// Path below `raw-data/`, with forward slashes.
+    /// Path below `raw-data/`, with forward slashes; of an own input the name of the file alone.
     pub file: String,
     /// What the file holds.
     pub title: String,
-    /// Publication.
+    /// Publication, or [`Provenance::OWN`].
     pub citation: String,
     /// Where the numbers were read.
     pub source: String,
@@ -157,6 +157,17 @@ pub struct Provenance {
     pub licence: String,
     /// SHA-256 of the file in lower-case hexadecimal.
     pub sha256: String,
+}
+
+impl Provenance {
+    /// The citation of a file that somebody made for themselves.
+    pub const OWN: &str = "own input";
+
+    /// Whether the file is somebody's own and none of `raw-data/`.
+    #[must_use]
+    pub fn is_own(&self) -> bool {
+        self.citation == Self::OWN
+    }
 }
 
 /// A table: what a file of `data/` holds.

@@ -3,6 +3,7 @@
 mod aerosol;
 #[cfg(any(feature = "plot", feature = "study"))]
 mod figures;
+mod import;
 mod lint;
 mod mie;
 
@@ -26,6 +27,8 @@ struct Cli {
 enum Command {
     /// Make every table from the raw data, or check that the tables are what the raw data make
     Build(BuildArgs),
+    /// Make a table of a file of your own: an aerosol, a radiosonde, an ozone sonde, a solar spectrum, an albedo
+    Import(import::ImportArgs),
     /// Show what a table holds: settings, axes, fields with their ranges, and where it came from
     Inspect {
         /// A table, such as data/rayleigh.table
@@ -81,6 +84,7 @@ pub(crate) fn run() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Build(args) if args.check => check_tables(&args),
         Command::Build(args) => build_tables(&args),
+        Command::Import(args) => import::import(&args),
         Command::Inspect { file } => show(&file),
         Command::Mie(args) => mie::solve(&args),
         Command::Biomes(args) => aerosol::biomes(&args),

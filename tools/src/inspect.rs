@@ -24,7 +24,8 @@ pub fn describe(table: &Table) -> String {
             ("SHA-256", &input.sha256),
         ];
         let rows = rows.into_iter().map(|(key, value)| vec![key.to_owned(), value.clone()]).collect();
-        section(&mut text, &format!("from raw-data/{}", input.file), rows);
+        let folder = if input.is_own() { "" } else { "raw-data/" };
+        section(&mut text, &format!("from {folder}{}", input.file), rows);
     }
     text
 }

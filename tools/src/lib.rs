@@ -1,9 +1,9 @@
 //! Airlight's data tool: from measured inputs in `raw-data/` to the tables in `data/`.
 //!
 //! [`raw`] reads the sources and converts them to SI; [`molecular`] and [`profile`] compute;
-//! [`build`] writes the tables; [`data`] reads them again, [`column`] says what they mean over one place, [`inspect`]
-//! puts one into words, [`lint`] judges tables and CSV files; `plot` draws what the tables hold and `study` compares,
-//! each behind a feature of its name.
+//! [`build`] writes the tables, and [`own`] some of people's own files; [`data`] reads them again, [`column`] says what
+//! they mean over one place, [`inspect`] puts one into words, [`lint`] judges tables and CSV files; `plot` draws what the
+//! tables hold and `study` compares, each behind a feature of its name.
 
 pub mod aerosol;
 pub mod build;
@@ -16,6 +16,7 @@ pub mod lint;
 pub mod mie;
 pub mod mie_cases;
 pub mod molecular;
+pub mod own;
 #[cfg(feature = "plot")]
 pub mod plot;
 pub mod profile;

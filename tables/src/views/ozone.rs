@@ -1,7 +1,7 @@
 //! Ozone: how much of it there is where, and how it absorbs.
 
 use super::{ALTITUDE, LATITUDE, MONTH, WAVELENGTH, scalar};
-use crate::{Axis, Curve, Field, Kind, Scale, Table, TableError};
+use crate::{Axis, Curve, Field, Kind, Outside, Scale, Table, TableError};
 use std::collections::BTreeMap;
 
 /// Absorption cross-section of ozone, sigma(lambda, T) = s_0 + s_1 (T - T_0) + s_2 (T - T_0)^2.
@@ -80,6 +80,13 @@ impl OzoneProfiles {
             number_density,
             column: table.field("column", "DU", &[MONTH.0, LATITUDE.0])?.clone(),
         })
+    }
+
+    /// Whether there is one profile only, which holds in every month at every latitude: a sonde's.
+    #[must_use]
+    pub fn is_single(&self) -> bool {
+        let one = |axis: &Axis| axis.nodes.len() == 1 && axis.outside == Outside::Hold;
+        one(&self.month) && one(&self.latitude)
     }
 
     /// The profile of a month (1 to 12) at a latitude in degrees, linear

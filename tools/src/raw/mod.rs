@@ -20,6 +20,7 @@ pub mod sun;
 pub mod us_standard_atmosphere;
 
 pub use error::{Fault, RawError};
+pub(crate) use source::sha256;
 pub use source::{Column, Row, Source};
 
 use std::path::Path;

@@ -104,7 +104,7 @@ impl<R: Row> Source<R> {
             citation: header.get(file, "citation")?,
             source: header.get(file, "source")?,
             licence: header.get(file, "licence")?,
-            sha256: Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect(),
+            sha256: sha256(bytes),
         };
         for key in ["retrieved", "changes"] {
             header.get(file, key)?;
@@ -124,6 +124,11 @@ impl<R: Row> Source<R> {
             Err(RawError::new(&self.provenance.file, Fault::WrongCount { expected, found }))
         }
     }
+}
+
+/// SHA-256 of a file in lower-case hexadecimal.
+pub(crate) fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The `# key: value` lines.
@@ -245,10 +250,19 @@ fn check_record(columns: &[Column], record: &StringRecord, previous: Option<&Str
 
 impl Column {
     fn check(&self, field: &str) -> Result<(), Fault> {
-        let Content::Number { low, high, optional } = self.content else { return Ok(()) };
-        if field.is_empty() && optional {
-            return Ok(());
+        match self.content {
+            Content::Text => Ok(()),
+            Content::Number { optional: true, .. } if field.is_empty() => Ok(()),
+            Content::Number { .. } => self.value(field).map(drop),
         }
+    }
+
+    /// The number that a field of this column is; of a text column any number.
+    pub(crate) fn value(&self, field: &str) -> Result<f64, Fault> {
+        let (low, high) = match self.content {
+            Content::Number { low, high, .. } => (low, high),
+            Content::Text => (f64::NEG_INFINITY, f64::INFINITY),
+        };
         let value: f64 = field.parse().map_err(|_| Fault::NotANumber { found: excerpt(field) })?;
         if !value.is_finite() {
             return Err(Fault::NotFinite { found: excerpt(field) });
@@ -256,7 +270,7 @@ impl Column {
         if value < low || value > high {
             return Err(Fault::OutOfRange { low, high, unit: self.unit.into(), found: excerpt(field) });
         }
-        Ok(())
+        Ok(value)
     }
 }
 
