@@ -102,7 +102,7 @@ impl<R: Row> Source<R> {
             citation: header.get(file, "citation")?,
             source: header.get(file, "source")?,
             licence: header.get(file, "licence")?,
-            sha256: Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect(),
+            sha256: sha256(bytes),
         };
         for key in ["retrieved", "changes"] {
             header.get(file, key)?;
@@ -124,17 +124,24 @@ impl<R: Row> Source<R> {
     }
 }
 
+/// SHA-256 of bytes in lower-case hexadecimal.
+#[must_use]
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// The `# key: value` lines.
-struct Header<'a> {
-    entries: Vec<(&'a str, &'a str)>,
+pub(crate) struct Header<'a> {
+    /// Keys and values, in order.
+    pub(crate) entries: Vec<(&'a str, &'a str)>,
     /// Number of lines of the header.
     lines: u64,
     /// Bytes of the header, line ends included.
-    length: usize,
+    pub(crate) length: usize,
 }
 
 impl<'a> Header<'a> {
-    fn parse(file: &str, text: &'a str) -> Result<Self, RawError> {
+    pub(crate) fn parse(file: &str, text: &'a str) -> Result<Self, RawError> {
         let mut header = Self { entries: Vec::new(), lines: 0, length: 0 };
         for line in text.split_inclusive('\n') {
             let Some(entry) = line.strip_prefix('#') else { break };
@@ -151,7 +158,7 @@ impl<'a> Header<'a> {
         Ok(header)
     }
 
-    fn find(&self, key: &str) -> Option<&'a str> {
+    pub(crate) fn find(&self, key: &str) -> Option<&'a str> {
         self.entries.iter().find(|(k, v)| *k == key && !v.is_empty()).map(|(_, v)| *v)
     }
 
