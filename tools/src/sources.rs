@@ -311,8 +311,11 @@ mod tests {
             assert_eq!(text.matches(&heading).count(), 1, "{heading}");
             assert!(!input.provenance.licence.is_empty() && !input.tables.is_empty(), "{heading}");
         }
-        let opac = sources.inputs.iter().find(|i| i.provenance.file == "aerosol-opac-1998/types.csv").expect("there");
-        assert_eq!(opac.tables.len(), 9, "one for each biome");
+        let named =
+            |t: &TableFile| Sources::of_file(&folder("data").join(&t.file)).expect("a table").1.provenance.len();
+        let (uses, named): (usize, usize) =
+            (sources.inputs.iter().map(|i| i.tables.len()).sum(), sources.tables.iter().map(named).sum());
+        assert_eq!(uses, named);
         assert!(text.contains("DejaVu") && text.lines().all(|line| line.chars().count() <= 140), "{text}");
     }
 

@@ -39,13 +39,13 @@ fn numbers_are_those_of_the_views_at_nodes() {
     let (air, rayleigh) = (data().air().expect("air"), data().rayleigh().expect("rayleigh"));
     let ozone = data().ozone_profiles().expect("ozone").profile(6, 45.0).expect("June").number_density_m3;
     for (i, m) in [0.0, 30e3].into_iter().enumerate() {
-        let density = |name| of(&sheet, "number_density_per_m3", name)[i];
+        // Each altitude has two angles, and so two rows.
+        let density = |name| of(&sheet, "number_density_per_m3", name)[2 * i];
         assert_eq!(density("molecules"), air.number_density_m3.at(m).ok());
         assert_eq!(density("ozone"), ozone.at(m).ok());
         assert_eq!(density("total"), None);
         let sigma = data().ozone_cross_section().expect("cross-section");
         let expected = sigma.cross_section_m2(400.0, air.temperature_k.at(m).expect("inside")).ok();
-        // Each altitude has two angles, and so two rows.
         assert_eq!(of(&sheet, "absorption_cross_section_m2", "ozone")[2 * i], expected);
     }
     assert_eq!(

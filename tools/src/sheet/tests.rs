@@ -88,9 +88,9 @@ fn text_has_blocks_of_aligned_columns_without_what_is_missing() {
         lines[..4],
         [
             "values",
-            "                 x_nm  word          y_m2",
-            "                   nm                m^2",
-            "                    0  a         0.333333"
+            "                 x_nm  word           y_m2",
+            "                   nm                  m^2",
+            "                    0  a          0.333333"
         ]
     );
     assert!(!text.contains("b,c"), "a row without a value is shown: {text}");
