@@ -197,7 +197,9 @@ pub fn sheet(data: Data<'_>, place: &Place, request: &Request) -> Result<Sheet, 
     check(&column, place, request)?;
     let species = column.species();
     let mut names: Vec<&str> = species.iter().map(|&s| column.name(s)).collect();
-    names.extend(&SUMS[usize::from(column.aerosols().is_empty())..]);
+    // An aerosol of one species that is called so is its own sum.
+    let sums = if column.aerosols().is_empty() || names.contains(&SUMS[0]) { &SUMS[1..] } else { &SUMS[..] };
+    names.extend(sums);
     if let Some(name) = request.species.iter().find(|name| !names.contains(&name.as_str())) {
         let known = names.iter().map(|&name| name.into()).collect();
         return Err(CoefficientsError::Species { name: name.clone(), known });
@@ -219,7 +221,7 @@ pub fn sheet(data: Data<'_>, place: &Place, request: &Request) -> Result<Sheet, 
             let mut rows = species.iter().map(one).collect::<Result<Vec<_>, _>>()?;
             let aerosol = Row::sum(&rows[2..]);
             let total = Row::sum(&rows);
-            rows.extend((!column.aerosols().is_empty()).then_some(aerosol));
+            rows.extend((sums.len() == SUMS.len()).then_some(aerosol));
             rows.push(total);
             Ok(rows)
         })

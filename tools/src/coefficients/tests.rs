@@ -119,6 +119,14 @@ fn the_phase_function_of_the_mixture_integrates_to_one_and_has_its_asymmetry() {
 }
 
 #[test]
+fn an_aerosol_of_one_species_stands_there_once() {
+    for (source, expected) in [(AerosolSource::Jaenicke, 4), (AerosolSource::Opac, 7)] {
+        let sheet = sheet(data(), &Place { source, ..hazy() }, &request(&[Quantity::Coefficient])).expect("a sheet");
+        assert_eq!((sheet.rows(), of(&sheet, "asymmetry", "aerosol").len()), (expected, 1));
+    }
+}
+
+#[test]
 fn only_what_is_asked_for_is_there() {
     let asked = Request { species: vec!["total".into()], ..request(&[Quantity::Phase]) };
     let total = sheet(data(), &hazy(), &asked).expect("a sheet");
