@@ -1,11 +1,14 @@
 //! The command line. Results go to standard output, progress and errors to standard error.
 
 mod aerosol;
+mod coefficients;
 #[cfg(any(feature = "plot", feature = "study"))]
 mod figures;
+mod files;
 mod import;
 mod lint;
 mod mie;
+mod output;
 
 use clap::{Args, Parser, Subcommand};
 use std::io::Write;
@@ -13,7 +16,6 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use tools::build::{self, Built, CheckReport, Target};
-use tools::inspect;
 
 /// Makes, checks and shows the tables that Airlight's renderer reads.
 #[derive(Parser)]
@@ -29,11 +31,14 @@ enum Command {
     Build(BuildArgs),
     /// Make a table of a file of your own: an aerosol, a radiosonde, an ozone sonde, a solar spectrum, an albedo
     Import(import::ImportArgs),
-    /// Show what a table holds: settings, axes, fields with their ranges, and where it came from
-    Inspect {
-        /// A table, such as data/rayleigh.table
-        file: PathBuf,
-    },
+    /// Show what tables or CSV files hold: settings, axes, fields with their ranges, and where it came from
+    Inspect(files::InspectArgs),
+    /// Number densities, cross-sections, coefficients, optical depths and phase functions of the air over a place
+    Coefficients(coefficients::CoefficientsArgs),
+    /// Write a table as CSV, JSON or Parquet
+    Export(files::ExportArgs),
+    /// Citations and licences of everything that the tables and figures are made from
+    Sources(files::SourcesArgs),
     /// Scatter light by spheres: efficiencies and amplitudes of every line of a CSV file
     Mie(mie::MieArgs),
     /// The aerosols of data/: extinction, albedo, asymmetry, Angstrom exponent and optical depth of each biome
@@ -85,7 +90,10 @@ pub(crate) fn run() -> ExitCode {
         Command::Build(args) if args.check => check_tables(&args),
         Command::Build(args) => build_tables(&args),
         Command::Import(args) => import::import(&args),
-        Command::Inspect { file } => show(&file),
+        Command::Inspect(args) => files::show(&args),
+        Command::Coefficients(args) => coefficients::write(&args),
+        Command::Export(args) => files::export(&args),
+        Command::Sources(args) => files::name_sources(&args),
         Command::Mie(args) => mie::solve(&args),
         Command::Biomes(args) => aerosol::biomes(&args),
         Command::Lint(args) => return lint::run(&args),
@@ -163,15 +171,6 @@ fn verdict(args: &BuildArgs, report: &CheckReport) -> String {
         parts.push(format!("{} written by no build", report.foreign.join(", ")));
     }
     format!("{}: {}", args.data.display(), parts.join("; "))
-}
-
-fn show(file: &std::path::Path) -> Result<(), String> {
-    let table = tables::file::read(file).map_err(|e| e.to_string())?;
-    match std::io::stdout().lock().write_all(inspect::describe(&table).as_bytes()) {
-        // A reader that has seen enough, such as `head`.
-        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        other => other.map_err(|e| format!("standard output: {e}")),
-    }
 }
 
 fn size(bytes: u64) -> String {

@@ -5,7 +5,7 @@
 
 use crate::data::Data;
 use tables::views::{self, AerosolSource, Biome, OzoneCrossSection, OzoneProfile, Rayleigh, StandardAtmosphere};
-use tables::{Curve, TableError};
+use tables::{Curve, Kind, TableError};
 
 /// What chooses the air over a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +26,16 @@ impl Default for Place {
     /// Clear air in June at 45 degrees north; OPAC where an aerosol is put in.
     fn default() -> Self {
         Self { month: 6, latitude_deg: 45.0, biome: None, source: AerosolSource::Opac, humidity_percent: None }
+    }
+}
+
+impl Place {
+    /// Names of the files of the tables that it needs.
+    #[must_use]
+    pub fn table_files(&self) -> Vec<String> {
+        let air = [Kind::StandardAtmosphere, Kind::Rayleigh, Kind::OzoneProfiles, Kind::OzoneCrossSection];
+        let aerosol = self.biome.map(|biome| views::Aerosol::file_name(self.source, biome));
+        air.map(Kind::file_name).into_iter().chain(aerosol).collect()
     }
 }
 
@@ -133,6 +143,15 @@ impl Column {
     #[must_use]
     pub fn rayleigh(&self) -> &Rayleigh {
         &self.rayleigh
+    }
+
+    /// Lowest and highest wavelength in nm of which the tables of molecules and ozone both speak; those of the aerosol
+    /// may end before.
+    #[must_use]
+    pub fn wavelength_range_nm(&self) -> (f64, f64) {
+        let (a, b) = self.rayleigh.cross_section_m2.axis().range();
+        let (c, d) = self.ozone_cross_section.coefficients[0].axis().range();
+        (a.max(c), b.min(d))
     }
 
     /// Vertical column of ozone in Dobson units.

@@ -2,13 +2,16 @@
 //!
 //! [`raw`] reads the sources and converts them to SI; [`molecular`] and [`profile`] compute;
 //! [`build`] writes the tables, and [`own`] some of people's own files; [`data`] reads them again, [`column`] says what
-//! they mean over one place, [`inspect`] puts one into words, [`lint`] judges tables and CSV files; `plot` draws what the
-//! tables hold and `study` compares, each behind a feature of its name.
+//! they mean over one place, [`inspect`] puts one into words, [`coefficients`] and [`export`] give out numbers as a
+//! [`sheet`] with its [`sources`], [`lint`] judges tables and CSV files; `plot` draws what the tables hold and `study`
+//! compares, each behind a feature of its name.
 
 pub mod aerosol;
 pub mod build;
+pub mod coefficients;
 pub mod column;
 pub mod data;
+pub mod export;
 #[cfg(any(feature = "plot", feature = "study"))]
 pub mod frame;
 pub mod inspect;
@@ -16,11 +19,15 @@ pub mod lint;
 pub mod mie;
 pub mod mie_cases;
 pub mod molecular;
+pub mod numbers;
 pub mod own;
 #[cfg(feature = "plot")]
 pub mod plot;
 pub mod profile;
 pub mod raw;
 pub mod records;
+pub mod sheet;
+pub mod sources;
 #[cfg(feature = "study")]
 pub mod study;
+pub mod text;

@@ -132,7 +132,8 @@ impl Origin {
             let missing = || TableError::Missing { what: "setting", name: key.into(), kind: table.kind.to_string() };
             table.settings.get(key).map(String::as_str).ok_or_else(missing)
         };
-        let unknown = |key: &str, name: &str| TableError::Inconsistent(format!("no {key} is called {:?}", excerpt(name)));
+        let unknown =
+            |key: &str, name: &str| TableError::Inconsistent(format!("no {key} is called {:?}", excerpt(name)));
         let source = setting("source")?;
         if source == OWN {
             return Ok(Self::Own(setting("name")?.into()));

@@ -1,7 +1,6 @@
 //! The subcommand `biomes`.
 
 use clap::Args;
-use std::io::Write;
 use std::path::PathBuf;
 use tables::units::KM;
 use tables::views::{Aerosol, AerosolSource, Biome, REFERENCE_WAVELENGTH_NM};
@@ -75,9 +74,5 @@ pub(super) fn biomes(args: &BiomesArgs) -> Result<(), String> {
             had.ground_extinction * height
         );
     }
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        // A reader that has seen enough, such as `head`.
-        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        other => other.map_err(|e| format!("standard output: {e}")),
-    }
+    super::output::print(text.as_bytes())
 }

@@ -126,20 +126,22 @@ impl<R: Row> Source<R> {
     }
 }
 
-/// SHA-256 of a file in lower-case hexadecimal.
-pub(crate) fn sha256(bytes: &[u8]) -> String {
+/// SHA-256 of bytes in lower-case hexadecimal.
+#[must_use]
+pub fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The `# key: value` lines.
-struct Header<'a> {
-    text: &'a str,
+pub(crate) struct Header<'a> {
+    /// All of them, line ends included.
+    pub(crate) text: &'a str,
     /// Number of lines of the header.
     lines: u64,
 }
 
 impl<'a> Header<'a> {
-    fn parse(file: &str, text: &'a str) -> Result<Self, RawError> {
+    pub(crate) fn parse(file: &str, text: &'a str) -> Result<Self, RawError> {
         let (mut lines, mut length) = (0, 0);
         for line in text.split_inclusive('\n').take_while(|line| line.starts_with('#')) {
             lines += 1;
@@ -152,8 +154,13 @@ impl<'a> Header<'a> {
         Ok(Self { text: &text[..length], lines })
     }
 
-    fn find(&self, key: &str) -> Option<&'a str> {
-        self.text.lines().filter_map(entry).find(|(k, v)| *k == key && !v.is_empty()).map(|(_, v)| v)
+    /// Keys and values, in order.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = (&'a str, &'a str)> {
+        self.text.lines().filter_map(entry)
+    }
+
+    pub(crate) fn find(&self, key: &str) -> Option<&'a str> {
+        self.entries().find(|(k, v)| *k == key && !v.is_empty()).map(|(_, v)| v)
     }
 
     fn get(&self, file: &str, key: &str) -> Result<String, RawError> {
