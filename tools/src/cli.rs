@@ -1,7 +1,7 @@
 //! The command line. Results go to standard output, progress and errors to standard error.
 
 mod aerosol;
-#[cfg(any(feature = "plot", feature = "study"))]
+#[cfg(feature = "study")]
 mod figures;
 mod mie;
 

@@ -2,13 +2,13 @@
 //!
 //! [`raw`] reads the sources and converts them to SI; [`molecular`] and [`profile`] compute;
 //! [`build`] writes the tables; [`data`] reads them again, [`column`] says what they mean over one place, [`inspect`]
-//! puts one into words; `plot` draws what the tables hold and `study` compares, each behind a feature of its name.
+//! puts one into words; `study` compares and `plot` draws what the tables hold, each behind a feature of its name.
 
 pub mod aerosol;
 pub mod build;
 pub mod column;
 pub mod data;
-#[cfg(any(feature = "plot", feature = "study"))]
+#[cfg(feature = "study")]
 pub mod frame;
 pub mod inspect;
 pub mod mie;

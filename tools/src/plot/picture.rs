@@ -74,7 +74,7 @@ mod tests {
     fn figure() -> Figure {
         let curve = Curve::new("a line", BLUE, vec![(0.0, 0.0), (1.0, 1.0)]);
         let panel = Panel::new(Axis::linear("x", 0.0, 1.0, 0.5), Axis::linear("y < z", 0.0, 1.0, 0.5), vec![curve]);
-        Figure { title: "title".into(), rows: vec![vec![panel]] }
+        Figure::new("title", vec![vec![panel]])
     }
 
     #[test]
