@@ -1,9 +1,7 @@
 //! Figures of aerosols.
 
-use super::colours::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION};
-use super::grids::{
-    against_km, altitudes, decades, dotted, points, sparse_wavelengths, wavelength_axis, words as species_words,
-};
+use super::colours::{BLACK, BLUE, GREEN, GREY, ORANGE, SKY, VERMILION};
+use super::grids::{self, against_km, altitudes, decades, dotted, points, sparse_wavelengths, wavelength_axis};
 use super::model::{Axis, Colour, Curve, Figure, Key, Panel, Stroke};
 use super::settings::words;
 use super::{Plot, PlotError, Settings};
@@ -36,13 +34,12 @@ pub(super) fn of_biome(
         heights.push(density.column(column, &values));
         concentrations.push(Curve::new(name, colour, against_km(&density.of(&values), &z)).stroke(stroke));
     };
-    let colours = [ORANGE, SKY, PURPLE, GREEN];
     let all = z.iter().map(|&z| column.aerosol_density(z)).collect::<Result<_, _>>()?;
-    add("all".into(), "concentration", BLACK, Stroke::Solid, all);
-    for (species, colour) in column.aerosols().into_iter().zip(colours) {
+    add("all particles".into(), "concentration", BLACK, Stroke::Solid, all);
+    for species in column.aerosols() {
         let values = z.iter().map(|&z| column.density(species).at(z)).collect::<Result<_, _>>()?;
         let name = format!("concentration_{}", column.name(species));
-        add(species_words(&column, species), &name, colour, Stroke::Dashed, values);
+        add(grids::words(&column, species), &name, grids::colour(&column, species), Stroke::Dashed, values);
     }
     if let Some(thesis) = thesis {
         let values = z.iter().map(|&z| thesis.particles_m3(biome, z)).collect::<Result<_, _>>()?;
@@ -55,16 +52,17 @@ pub(super) fn of_biome(
     let mut spectra = vec![("wavelength_nm".to_owned(), nm.clone())];
     let mut sections = Vec::new();
     for (prefix, pair, stroke) in [("", Some(&ours), Stroke::Solid), ("thesis_", theirs.as_ref(), Stroke::Dotted)] {
-        let looks = [("scattering", GREEN), ("absorption", PURPLE)];
+        let looks = [("scattering", BLUE), ("absorption", VERMILION)];
         for ((name, colour), values) in looks.into_iter().zip(pair.into_iter().flatten()) {
             spectra.push(section.column(&format!("{prefix}{name}"), values));
             let key = if prefix.is_empty() { name } else { "" };
             sections.push(Curve::new(key, colour, points(&nm, &section.of(values))).stroke(stroke));
         }
     }
+    let named = concentrations.iter().chain(&sections).filter(|curve| !curve.name.is_empty());
+    let mut key: Vec<Curve> = named.map(|curve| Curve { points: Vec::new(), ..curve.clone() }).collect();
     if theirs.is_some() {
-        concentrations.push(dotted());
-        sections.push(dotted());
+        key.push(dotted());
     }
     let of = |curves: &[Curve], value: fn(&(f64, f64)) -> f64| -> Vec<f64> {
         curves.iter().flat_map(|curve| curve.points.iter().map(value)).collect()
@@ -77,11 +75,13 @@ pub(super) fn of_biome(
         decades(&format!("concentration / {}", density.sign), &seen, 8),
         Axis::linear("altitude / km", 0.0, TOP_KM, 5.0),
         concentrations,
-    );
+    )
+    .key(Key::None);
     let label = format!("cross-section of a particle at the ground / {}", section.sign);
     let right = Panel::new(wavelength_axis(100.0), decades(&label, &of(&sections, |p| p.1), 16), sections);
+    let right = right.key(Key::None);
     let title = format!("Aerosol: {} ({})", words(biome), settings.aerosol([&column]));
-    let figure = Figure::new(title, vec![vec![left, right.share(1.1)]]);
+    let figure = Figure::new(title, vec![vec![left, right.share(1.1)]]).key(key);
     heights.extend(spectra);
     Ok(Plot { figure, frame: Frame::ragged(heights)? })
 }
@@ -108,7 +108,7 @@ fn look(biome: Biome) -> (Colour, Stroke) {
 }
 
 /// Single-scattering albedo and asymmetry of the biomes' mixtures at the ground against wavelength; the albedo of the
-/// thesis in a panel of its own.
+/// thesis in a panel of its own, with the looks of the others: dots alone would not tell nine apart.
 pub(super) fn albedo_asymmetry(
     data: Data<'_>,
     settings: &Settings,
@@ -134,26 +134,30 @@ pub(super) fn albedo_asymmetry(
         if let Some(thesis) = thesis {
             let had = |&w: &f64| Ok(albedo(thesis.particle_m2(biome, w)?));
             let values = nm.iter().map(had).collect::<Result<_, TableError>>()?;
-            add(1, format!("thesis_{biome}_albedo"), Stroke::Dotted, values);
+            add(1, format!("thesis_{biome}_albedo"), stroke, values);
         }
         airs.push(column);
     }
-    let lowest = |curves: &[Curve]| curves.iter().flat_map(|c| &c.points).map(|p| p.1).fold(1.0, f64::min);
-    let from = |lowest: f64, label: &str, high: f64| Axis::linear(label, (lowest * 10.0).floor() / 10.0, high, 0.1);
+    // Whole tenths, and a little room beyond them for curves that touch.
+    let fitted = |label: &str, curves: &[Curve]| {
+        let values = || curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
+        let (low, high) = (values().fold(1.0, f64::min), values().fold(0.0, f64::max));
+        Axis::linear(label, (low * 10.0).floor() / 10.0 - 0.01, (high * 10.0).ceil() / 10.0 + 0.01, 0.1)
+    };
     let [own, had, mut asymmetry] = curves;
-    let lowest = (lowest(&own), lowest(&asymmetry));
     let panel = |y: Axis, curves: Vec<Curve>| Panel::new(wavelength_axis(200.0), y, curves).key(Key::None);
-    let mut row = vec![panel(from(lowest.0, "single-scattering albedo", 1.0), own)];
+    let g = fitted("asymmetry parameter g", &asymmetry);
+    let mut row = vec![panel(fitted("single-scattering albedo", &own), own)];
     if thesis.is_some() {
-        let label = "albedo in the thesis' code, where scattering and absorption are swapped";
-        row.push(panel(Axis::linear(label, 0.0, 1.0, 0.1), had));
+        row.push(panel(fitted("albedo in the thesis' code (swapped)", &had), had));
         asymmetry.push(
             Curve::new("", BLACK, vec![(nm[0], ASYMMETRY), (nm[nm.len() - 1], ASYMMETRY)]).stroke(Stroke::Dotted),
         );
-        key.push(dotted());
+        let name = format!("g in the thesis' code, {ASYMMETRY}");
+        key.push(Curve { name, colour: BLACK, ..dotted() });
         columns.push(("thesis_asymmetry".into(), vec![ASYMMETRY; nm.len()]));
     }
-    row.push(panel(from(lowest.1, "asymmetry parameter g", 1.0), asymmetry));
+    row.push(panel(g, asymmetry));
     let title = format!("Aerosols at the ground ({})", settings.aerosol(&airs));
     Ok(Plot { figure: Figure::new(title, vec![row]).key(key), frame: Frame::new(columns)? })
 }

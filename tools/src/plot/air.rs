@@ -1,6 +1,6 @@
 //! Figures of air.
 
-use super::colours::{BLUE, GREEN, GREY, VERMILION};
+use super::colours::{BLACK, BLUE, GREEN, VERMILION};
 use super::grids::{against_km, dotted};
 use super::model::{Axis, Curve, Figure, Key, Panel, Stroke};
 use super::{Plot, PlotError, Settings};
@@ -47,17 +47,16 @@ pub(super) fn number_density(data: Data<'_>, settings: &Settings, thesis: Option
     columns.push(unit.column("thesis_number_density", &molecules));
     for (panel, values) in panels.iter_mut().zip([&unit.of(&molecules), &others[0], &others[1]]) {
         let points = against_km(values, altitudes);
-        let colour = panel.curves.first().map_or(GREY, |curve| curve.colour);
-        panel.curves.push(Curve::new("", colour, points).stroke(Stroke::Dotted));
+        panel.curves.push(Curve::new("", BLACK, points).stroke(Stroke::Dotted));
     }
     let departure: Vec<f64> = molecules.iter().zip(density).map(|(had, is)| 100.0 * (had / is - 1.0)).collect();
     let [pressure, temperature] = others;
     columns.extend([("thesis_pressure_pa".into(), pressure), ("thesis_temperature_k".into(), temperature)]);
     columns.push(("thesis_number_density_departure_percent".into(), departure.clone()));
-    let error = Curve::new("", BLUE, against_km(&departure, altitudes)).stroke(Stroke::Dotted);
-    let label = "thesis' number density less this one / %";
+    let error = Curve::new("", BLACK, against_km(&departure, altitudes)).stroke(Stroke::Dotted);
+    let label = "departure of the thesis' number density / %";
     panels.push(Panel::new(Axis::linear(label, -25.0, 5.0, 5.0), altitude(), vec![error]).key(Key::None));
     let lower = panels.split_off(2);
-    let figure = Figure::new(title, vec![panels, lower]).key(vec![dotted()]);
+    let figure = Figure::new(title, vec![panels, lower]).key(vec![Curve { colour: BLACK, ..dotted() }]);
     Ok(Plot { figure, frame: Frame::new(columns)? })
 }

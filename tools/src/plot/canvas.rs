@@ -120,7 +120,7 @@ impl<B: DrawingBackend> Canvas<B> {
         const DOT: f64 = 3.0;
         if stroke == Stroke::Marks {
             for &point in points.iter().flatten().filter(|p| frame.holds(**p)) {
-                self.disc(point, 3.4, colour)?;
+                self.disc(point, 4.4, colour)?;
             }
             return Ok(());
         }

@@ -143,14 +143,16 @@ pub(super) fn against_altitude(
     }
     let label = format!("coefficient / {}", unit.sign);
     let all = ours.iter().chain(theirs.iter().flatten()).flatten().map(|v| v * unit.factor).collect::<Vec<_>>();
-    // As many decades as make the lowest six of what the tables hold visible.
-    let own = decades(&label, &unit.of(&ours[4]), 6).range.0;
-    let axis = |label: &str| {
-        let axis = decades(label, &all, 20);
-        Axis { range: (own, axis.range.1), ..axis }
-    };
+    // As many decades as make the highest six of what the tables hold visible.
+    let low = decades(&label, &unit.of(&ours[4]), 6).range.0;
+    let high = decades(&label, &all, 1).range.1;
     let panel = |top: f64, step: f64| {
-        Panel::new(axis(&label), Axis::linear("altitude / km", 0.0, top, step), curves.clone()).key(Key::None)
+        Panel::new(
+            Axis::logarithmic(&label, low, high, 1),
+            Axis::linear("altitude / km", 0.0, top, step),
+            curves.clone(),
+        )
+        .key(Key::None)
     };
     let place = match biome {
         Some(biome) => format!("{} ({}), {}", words(biome), settings.aerosol([&column]), settings.season()),

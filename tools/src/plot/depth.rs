@@ -1,8 +1,8 @@
 //! The figure of optical depths.
 
-use super::colours::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION};
-use super::grids::{dotted, from_zero, points, sparse_wavelengths, wavelength_axis, words as species_words};
-use super::model::{Area, Axis, Colour, Curve, Figure, Key, Panel, Stroke, stacked};
+use super::colours::{BLACK, GREY};
+use super::grids::{self, dotted, from_zero, points, sparse_wavelengths, wavelength_axis};
+use super::model::{Area, Axis, Curve, Figure, Key, Panel, Stroke, stacked};
 use super::settings::words;
 use super::{Plot, PlotError, Settings};
 use crate::column::{Column, Species};
@@ -14,21 +14,10 @@ use tables::units::TOP_ALTITUDE_M;
 use tables::views::Biome;
 
 /// From this wavelength in nm on the axis holds everything; ozone towers below.
-const FITTED_FROM_NM: f64 = 325.0;
+const FITTED_FROM_NM: f64 = 350.0;
 
 /// Panels in a row.
 const ACROSS: usize = 3;
-
-fn colour(column: &Column, species: Species) -> Colour {
-    match (species, column.name(species)) {
-        (Species::Molecules, _) => BLUE,
-        (Species::Ozone, _) => VERMILION,
-        (_, "free_troposphere") => SKY,
-        (_, "stratosphere") => PURPLE,
-        (_, "transported_mineral") => GREEN,
-        _ => ORANGE,
-    }
-}
 
 /// What one panel shows.
 struct Shown {
@@ -60,7 +49,10 @@ pub(super) fn optical_depth(data: Data<'_>, settings: &Settings, thesis: Option<
         title = format!("{title}; aerosols: {}", settings.aerosol(&airs));
     }
     let mut key: Vec<Curve> = Vec::new();
-    for area in shown.iter().flat_map(|one| &one.areas) {
+    // Of the place with the most species first, so that they stand in their order.
+    let mut longest: Vec<&Shown> = shown.iter().collect();
+    longest.sort_by_key(|one| std::cmp::Reverse(one.areas.len()));
+    for area in longest.into_iter().flat_map(|one| &one.areas) {
         if key.iter().all(|entry| entry.name != area.name) {
             key.push(Curve::new(area.name.clone(), area.colour, Vec::new()).stroke(Stroke::Filled));
         }
@@ -79,7 +71,11 @@ pub(super) fn optical_depth(data: Data<'_>, settings: &Settings, thesis: Option<
         let x = wavelength_axis(if grid { 200.0 } else { 100.0 });
         let x = Axis { label: if below { x.label } else { String::new() }, ..x };
         let y = from_zero(if i % ACROSS == 0 { "optical depth" } else { "" }, highest);
-        let name = biome.map_or("clear air".into(), words);
+        let mut name = biome.map_or("clear air".into(), words);
+        if one.thesis.as_ref().is_some_and(|had| had.iter().all(|depth| *depth > y.range.1)) {
+            let lowest = one.thesis.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+            name = format!("{name} (thesis: {lowest:.3} and more)");
+        }
         let panel = Panel::new(x, y, curves).areas(one.areas.clone()).key(Key::None).titled(name);
         match rows.last_mut() {
             Some(row) if row.len() < ACROSS => row.push(panel),
@@ -110,13 +106,13 @@ fn of_place(
         let (name, column) = match (species, biome) {
             (Species::Molecules, _) => ("scattering by molecules".into(), "molecular_scattering".to_owned()),
             (Species::Ozone, _) => ("absorption by ozone".into(), "ozone_absorption".to_owned()),
-            (_, Some(biome)) => (species_words(air, species), format!("{biome}_{}", air.name(species))),
+            (_, Some(biome)) => (grids::words(air, species), format!("{biome}_{}", air.name(species))),
             (_, None) => continue,
         };
         if columns.iter().all(|(name, _)| *name != column) {
             columns.push((column, values.clone()));
         }
-        layers.push((name, colour(air, species), values));
+        layers.push((name, grids::colour(air, species), values));
     }
     let prefix = biome.map_or(String::new(), |biome| format!("{biome}_"));
     columns.push((format!("{prefix}total"), total.clone()));

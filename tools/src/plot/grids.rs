@@ -1,7 +1,7 @@
 //! Where figures ask the tables, and axes that fit the answers.
 
-use super::colours::GREY;
-use super::model::{Axis, Curve, Stroke};
+use super::colours::{BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION};
+use super::model::{Axis, Colour, Curve, Stroke};
 use crate::column::{Column, Species};
 use crate::study::thesis;
 use tables::units::{KM, TOP_ALTITUDE_M, WAVELENGTH_RANGE_NM};
@@ -97,6 +97,18 @@ pub(super) fn from_zero(label: &str, highest: f64) -> Axis {
     let power = 10_f64.powf((highest / 5.0).log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| highest / s <= 6.0).unwrap_or(power);
     Axis::linear(label, 0.0, (highest / step).ceil() * step, step)
+}
+
+/// Colour of a species in every figure that shows it.
+pub(super) fn colour(column: &Column, species: Species) -> Colour {
+    match (species, column.name(species)) {
+        (Species::Molecules, _) => BLUE,
+        (Species::Ozone, _) => VERMILION,
+        (_, "free_troposphere") => SKY,
+        (_, "stratosphere") => PURPLE,
+        (_, "transported_mineral") => GREEN,
+        _ => ORANGE,
+    }
 }
 
 /// A species in words: "boundary layer".

@@ -104,7 +104,7 @@ fn thesis(frame: &Frame) -> Result<Figure, PolarsError> {
     };
     let profiles = Panel::new(
         Axis::logarithmic("ozone, April / 10¹⁸ m⁻³", 1e-2, 1e3, 1),
-        Axis::linear("altitude / km", 0.0, 70.0, 10.0),
+        Axis::linear("altitude / km", 0.0, 100.0, 20.0),
         vec![
             density("climatology, 45° N", "ozone_climatology_m3", BLUE)?,
             layers("Arosa, six layers", "ozone_layers_m3", ORANGE)?,
@@ -137,20 +137,21 @@ fn thesis(frame: &Frame) -> Result<Figure, PolarsError> {
 fn extinctions(frame: &Frame) -> Result<Panel, PolarsError> {
     let nm = frame.column("aerosol_wavelength_nm")?;
     let mut curves = Vec::new();
-    for (name, source, colour) in [("opac", "opac", BLUE), ("jaenicke", "jaenicke", ORANGE), ("thesis", "thesis", GREY)]
+    for (name, source, colour) in
+        [("OPAC", "opac", BLUE), ("Jaenicke", "jaenicke", ORANGE), ("thesis' code", "thesis", BLACK)]
     {
         let mut points = Vec::new();
         for (i, biome) in (1..).zip(Biome::ALL) {
             let values = frame.column(&format!("{biome}_{source}_per_m"))?;
             let green = nm.iter().zip(values).find(|(w, _)| **w == REFERENCE_WAVELENGTH_NM);
-            points.extend(green.map(|(_, value)| (f64::from(i), value * KM)));
+            points.extend(green.map(|(_, value)| (value * KM, f64::from(-i))));
         }
         curves.push(Curve::new(name, colour, points).stroke(Stroke::Marks));
     }
-    let names = (1..).zip(Biome::ALL).map(|(i, biome)| (f64::from(i), biome.name().to_owned())).collect();
+    let names = (1..).zip(Biome::ALL).map(|(i, biome)| (f64::from(-i), biome.name().to_owned())).collect();
     Ok(Panel::new(
-        Axis::linear("", 0.5, 9.5, 1.0).named(names),
         Axis::logarithmic("extinction at the ground, 550 nm / km⁻¹", 1e-3, 1e4, 1),
+        Axis::linear("", -9.5, -0.5, 1.0).named(names),
         curves,
     )
     .key(Key::Beside))
