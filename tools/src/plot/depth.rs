@@ -74,7 +74,7 @@ pub(super) fn optical_depth(data: Data<'_>, settings: &Settings, thesis: Option<
         let mut name = biome.map_or("clear air".into(), words);
         if one.thesis.as_ref().is_some_and(|had| had.iter().all(|depth| *depth > y.range.1)) {
             let lowest = one.thesis.iter().flatten().copied().fold(f64::INFINITY, f64::min);
-            name = format!("{name} (thesis: {lowest:.3} and more)");
+            name = format!("{name}, thesis over {:.0}", lowest.floor());
         }
         let panel = Panel::new(x, y, curves).areas(one.areas.clone()).key(Key::None).titled(name);
         match rows.last_mut() {
