@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use tables::views::Biome;
+use tables::views::{AerosolSource, Biome};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -152,8 +152,8 @@ fn dotted_curves_have_the_errors_that_are_known() {
         at_ground(&format!("{prefix}aerosol_scattering")) + at_ground(&format!("{prefix}aerosol_absorption"))
     };
     near(sum("thesis_") / sum(""), 876.0, 5e-3);
-    // Its albedo of 0.584 is the share that was taken for absorption.
-    near(at_ground("thesis_aerosol_absorption") / sum("thesis_"), 0.584, 1e-3);
+    // Its albedo of 0.584 is the share that was taken for absorption; the wavelengths that we have are 7 nm apart.
+    near(at_ground("thesis_aerosol_absorption") / sum("thesis_"), 0.584, 2e-3);
     // 280 times at 360 nm, of two digits.
     let ratio = |nm: f64| {
         folder.value("cross-sections.csv", nm, "thesis_ozone_absorption_m2")
@@ -166,18 +166,29 @@ fn dotted_curves_have_the_errors_that_are_known() {
 
 #[test]
 fn every_biome_source_and_humidity_is_drawn() {
-    let folder = Folder::new("cases");
-    for (source, humidity) in [("opac", "0"), ("opac", "99"), ("jaenicke", "50")] {
-        let case = ["--aerosol-source", source, "--humidity", humidity, "--wavelength", "1000", "--quiet"];
-        let figures = ["aerosol", "coefficients", "optical-depth", "albedo-asymmetry", "phase-functions"];
-        let output = plot(&[&figures[..], &case].concat(), &folder);
-        assert!(output.status.success(), "{}", words(&output));
-        for biome in Biome::ALL {
-            for name in ["aerosol", "coefficients"] {
-                folder.holds_pictures(&format!("{name}-{biome}"));
+    use tools::plot::{Name, Settings, make, svg};
+    let (data, mut place) = (root().join("data"), Settings::default().place);
+    let thesis = tools::study::thesis::Thesis::from_dir(&root().join("raw-data")).expect("sound");
+    let figures = [Name::Aerosol, Name::Coefficients, Name::OpticalDepth, Name::AlbedoAsymmetry, Name::PhaseFunctions];
+    for (source, humidity) in [
+        (AerosolSource::Opac, Some(0.0)),
+        (AerosolSource::Opac, Some(99.0)),
+        (AerosolSource::Jaenicke, Some(50.0)),
+        (AerosolSource::Jaenicke, None),
+    ] {
+        (place.source, place.humidity_percent) = (source, humidity);
+        let settings = Settings { place, wavelength_nm: 1000.0, ..Settings::default() };
+        for name in figures {
+            let plots = make(name, tools::data::Data(&data), &settings, Some(&thesis)).expect("drawn");
+            let expected = if matches!(name, Name::Aerosol | Name::Coefficients) { Biome::ALL.len() } else { 1 };
+            assert_eq!(plots.len(), expected);
+            for (stem, plot) in plots {
+                let text = String::from_utf8(svg(&plot.figure).expect("drawn")).expect("UTF-8");
+                assert!(text.contains("<path ") && !text.contains("NaN"), "{stem}, {source}, {humidity:?}");
+                let rows = plot.frame.data().height();
+                assert!(rows > 100, "{stem} has {rows} rows");
             }
         }
-        ["optical-depth", "albedo-asymmetry", "phase-functions"].map(|name| folder.holds_pictures(name));
     }
 }
 

@@ -36,7 +36,8 @@ pub(super) fn of_biome(
     };
     let all = z.iter().map(|&z| column.aerosol_density(z)).collect::<Result<_, _>>()?;
     add("all particles".into(), "concentration", BLACK, Stroke::Solid, all);
-    for species in column.aerosols() {
+    // A single species is all particles.
+    for species in column.aerosols().into_iter().filter(|_| column.aerosols().len() > 1) {
         let values = z.iter().map(|&z| column.density(species).at(z)).collect::<Result<_, _>>()?;
         let name = format!("concentration_{}", column.name(species));
         add(grids::words(&column, species), &name, grids::colour(&column, species), Stroke::Dashed, values);

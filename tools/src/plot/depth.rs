@@ -13,8 +13,8 @@ use tables::TableError;
 use tables::units::TOP_ALTITUDE_M;
 use tables::views::Biome;
 
-/// From this wavelength in nm on the axis holds everything; ozone towers below.
-const FITTED_FROM_NM: f64 = 350.0;
+/// From this wavelength in nm on the axis of a single panel holds everything, and that of many; ozone towers below.
+const FITTED_FROM_NM: [f64; 2] = [315.0, 350.0];
 
 /// Panels in a row.
 const ACROSS: usize = 3;
@@ -41,7 +41,8 @@ pub(super) fn optical_depth(data: Data<'_>, settings: &Settings, thesis: Option<
         shown.push(of_place(&air, biome, settings, thesis, &nm, &mut columns)?);
         airs.push(air);
     }
-    let fitted = nm.partition_point(|w| *w < FITTED_FROM_NM);
+    let grid = biomes.len() > 1;
+    let fitted = nm.partition_point(|w| *w < FITTED_FROM_NM[usize::from(grid)]);
     let highest = shown.iter().flat_map(|one| &one.total[fitted..]).copied().fold(0.0, f64::max);
     let du = airs.first().map_or(0.0, Column::ozone_du);
     let mut title = format!("Vertical optical depth, {}, {du:.0} DU of ozone", settings.season());
@@ -60,7 +61,6 @@ pub(super) fn optical_depth(data: Data<'_>, settings: &Settings, thesis: Option<
     if thesis.is_some() {
         key.push(Curve { name: "dotted: total of the thesis' code".into(), colour: BLACK, ..dotted() });
     }
-    let grid = biomes.len() > 1;
     let mut rows: Vec<Vec<Panel>> = Vec::new();
     for (i, (&biome, one)) in biomes.iter().zip(&shown).enumerate() {
         let mut curves = vec![Curve::new("", BLACK, points(&nm, &one.total))];
