@@ -2,7 +2,7 @@
 
 mod aerosol;
 mod coefficients;
-#[cfg(any(feature = "plot", feature = "study"))]
+#[cfg(feature = "study")]
 mod figures;
 mod files;
 mod import;

@@ -1,10 +1,10 @@
 //! Airlight's data tool: from measured inputs in `raw-data/` to the tables in `data/`.
 //!
 //! [`raw`] reads the sources and converts them to SI; [`molecular`] and [`profile`] compute;
-//! [`build`] writes the tables, and [`own`] some of people's own files; [`data`] reads them again, [`column`] says what
-//! they mean over one place, [`inspect`] puts one into words, [`coefficients`] and [`export`] give out numbers as a
-//! [`sheet`] with its [`sources`], [`lint`] judges tables and CSV files; `plot` draws what the tables hold and `study`
-//! compares, each behind a feature of its name.
+//! [`build`] writes the tables, and [`own`] some of people's own files; [`data`] reads them again, [`mod@column`] says
+//! what they mean over one place, [`inspect`] puts one into words, [`coefficients`] and [`export`] give out numbers as a
+//! [`sheet`] with its [`sources`], [`lint`] judges tables and CSV files; `study` compares and `plot` draws what the
+//! tables hold, each behind a feature of its name.
 
 pub mod aerosol;
 pub mod build;
@@ -12,7 +12,7 @@ pub mod coefficients;
 pub mod column;
 pub mod data;
 pub mod export;
-#[cfg(any(feature = "plot", feature = "study"))]
+#[cfg(feature = "study")]
 pub mod frame;
 pub mod inspect;
 pub mod lint;

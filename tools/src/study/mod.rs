@@ -1,17 +1,19 @@
 //! Studies: how far numbers that should agree do not.
 //!
-//! A study computes from `raw-data/` and in memory; nothing else in Airlight uses what it finds.
-//! The `figure` of a study (with the feature `plot`) is drawn from its numbers.
+//! A study computes from `raw-data/`, and where it compares with what was made of them, from the tables; but for the
+//! figures, which draw what [`thesis`] had beside the tables, nothing in Airlight uses what it finds. The `figure` of
+//! a study (with the feature `plot`) is drawn from its numbers.
 
 #[cfg(feature = "plot")]
 mod figures;
 mod interpolation;
 mod rayleigh;
-mod thesis;
+pub mod thesis;
 
 #[cfg(feature = "plot")]
 pub use figures::figure;
 
+use crate::data::Data;
 use crate::frame::Frame;
 use crate::raw::RawError;
 use polars::prelude::PolarsError;
@@ -51,7 +53,7 @@ pub enum Name {
     Rayleigh,
     /// What interpolation between the nodes of the tables misses.
     Interpolation,
-    /// Ozone and air of the thesis' code against those of the tables.
+    /// Ozone, air and aerosols of the thesis' code against those of the tables.
     Thesis,
 }
 
@@ -70,16 +72,16 @@ impl Name {
     }
 }
 
-/// Computes a study from the raw data. Columns that belong to another abscissa than the first stand
+/// Computes a study from the raw data and the tables made from them. Columns that belong to another abscissa than the first stand
 /// beside it with gaps at the end.
 ///
 /// # Errors
 /// [`StudyError`].
-pub fn make(name: Name, raw_dir: &Path) -> Result<Frame, StudyError> {
+pub fn make(name: Name, raw_dir: &Path, data: Data<'_>) -> Result<Frame, StudyError> {
     match name {
         Name::Rayleigh => rayleigh::compare(raw_dir),
         Name::Interpolation => interpolation::at_half_nodes(raw_dir),
-        Name::Thesis => thesis::compare(raw_dir),
+        Name::Thesis => thesis::compare(raw_dir, data),
     }
 }
 
@@ -106,13 +108,4 @@ pub fn write(name: Name, frame: &Frame, folder: &Path) -> Result<Vec<PathBuf>, S
         tables::file::replace(&path, &frame.csv()?).map_err(failed(&path))?;
         Ok(vec![path])
     }
-}
-
-/// A frame of columns of different lengths: the shorter end in gaps.
-fn ragged(columns: Vec<(&str, Vec<f64>)>) -> Result<Frame, PolarsError> {
-    let longest = columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
-    Frame::new(columns.into_iter().map(|(name, mut values)| {
-        values.resize(longest, f64::NAN);
-        (name, values)
-    }))
 }
