@@ -6,6 +6,7 @@ use renderer::film::exr;
 use renderer::scene::Scene;
 use std::path::Path;
 use tables::{Table, TableError, file, views};
+use tools::own;
 use tools::raw::{self, Source};
 
 /// A reader.
@@ -91,6 +92,38 @@ pub fn targets() -> Vec<Target> {
         "aerosol-gavin-2020/biomes": aerosol_gavin::Biome,
         "aerosol-gavin-2020/cross-sections": aerosol_gavin::CrossSections,
     );
+    macro_rules! own {
+        ($($name:literal: $path:path, $seed:literal);+ $(;)?) => {$(
+            add(concat!("own ", $name), Form::Text, true, vec![$seed.into()], |bytes| {
+                <$path>::parse("input.csv", bytes, &[]).map(drop).map_err(|e| e.to_string())
+            });
+        )+};
+    }
+    own!(
+        "modes": own::aerosol::Modes, "median_radius_um,sigma_g,number_density_cm3\n0.07,1.7,800\n0.6,2.0,1.5\n";
+        "sizes": own::aerosol::Distribution, "radius_um,dn_dlogr_cm3\n0.05,1200\n0.3,60\n1,2\n5,0.01\n";
+        "index": own::aerosol::Index, "wavelength_nm,n,k\n300,1.50,0.02\n550,1.48,0.01\n1000,1.46,0.015\n";
+        "layer": own::aerosol::Vertical, "altitude_km,relative\n0,1\n1.5,0.8\n3,0.05\n";
+        "albedo": own::albedo::Spectrum, "wavelength_nm,albedo_percent\n350,2\n550,10\n680,4\n800,45\n";
+        "ozone": own::ozone::Sonde, "pressure_hpa,ozone_partial_pressure_mpa,temperature_c\n1005,4.1,14\n30,14.0,-52\n";
+        "sun": own::sun::Spectrum, "wavelength_um,irradiance_w_m2_um\n0.3,500\n0.5,1900\n0.7,1400\n1.0,740\n";
+    );
+    let sounding = "altitude_m,pressure_hpa,temperature_c\n450,963.2,18.4\n1500,852.0,11.0\n5600,508.0,-14.5\n";
+    add("own sounding", Form::Text, true, vec![sounding.into()], |bytes| {
+        own::atmosphere::Sounding::parse("input.csv", bytes, &[], true).map(drop).map_err(|e| e.to_string())
+    });
+    let judged =
+        ["aerosol-gavin-2020/biomes", "bucholtz-1995/king-factor"].map(|name| file(&format!("raw-data/{name}.csv")));
+    add("lint csv", Form::Text, true, judged.into(), |bytes| {
+        let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
+        tools::lint::lint_csv("input.csv", text).map(drop).map_err(|e| e.to_string())
+    });
+    add("lint table", Form::Table, false, vec![file("data/ozone-layers.table"), file("data/sun.table")], |bytes| {
+        table(bytes, |table| Ok(tools::lint::lint_table(table)))
+    });
+    add("inspect csv", Form::Text, true, vec![file("raw-data/bucholtz-1995/king-factor.csv")], |bytes| {
+        tools::inspect::describe_csv("input.csv", bytes).map(drop).map_err(|e| e.to_string())
+    });
     let spheres = "id,x,m_re,m_im\n1,0.1,1.5,-0.01\n\"a,b\",1e3,1.33,0\n";
     add("mie cases", Form::Text, true, vec![spheres.into()], mie_cases);
     let scenes = ["clear-noon", "desert-dusk", "limb"].map(|name| file(&format!("scenes/{name}.json")));
