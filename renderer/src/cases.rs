@@ -5,10 +5,11 @@
 //! azimuth 0 and zenith angle `sza_deg` at the observer's vertical; the view is the
 //! direction looked in, its azimuth counted from the sun's.
 
+mod bounded;
 mod input;
 mod physics;
 
-pub use input::{CasesError, Suite, Tier, read};
+pub use input::{CasesError, Suite, Tier, parse, read};
 
 use crate::sampling::Sampler;
 use crate::transport::Method;

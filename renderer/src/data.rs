@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use tables::file::{checksum, decode};
 use tables::views::{
-    Aerosol, AerosolSource, Biome, GroundAlbedo, Observer, OzoneCrossSection, OzoneLayers, OzoneProfiles, Rayleigh,
-    StandardAtmosphere, Sun,
+    Aerosol, AerosolSource, Biome, GroundAlbedo, Observer, Origin, OzoneCrossSection, OzoneLayers, OzoneProfiles,
+    Rayleigh, StandardAtmosphere, Sun,
 };
 use tables::{Kind, Table, TableError};
 
@@ -27,6 +27,8 @@ pub struct Data {
     pub observer: Observer,
     /// Grounds by name.
     pub ground_albedo: GroundAlbedo,
+    /// An aerosol that is somebody's own.
+    pub own_aerosol: Option<Aerosol>,
     /// What was read, for the picture's attributes.
     pub identities: Vec<Identity>,
     folder: PathBuf,
@@ -35,8 +37,12 @@ pub struct Data {
 /// What identifies a table file that was read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
-    /// File name below the data folder.
+    /// File name below the data folder; of an own table the name of the file alone.
     pub file: String,
+    /// What the table holds.
+    pub kind: Kind,
+    /// Whether it is an own table, which came in place of that of the data folder or beside it.
+    pub own: bool,
     /// Title in the file.
     pub title: String,
     /// [`checksum`] of the file.
@@ -54,6 +60,24 @@ pub enum DataError {
         /// The file missed.
         file: String,
     },
+    /// Two own tables of a kind of which a picture has one.
+    #[error("{} and {} are both of the kind {kind}: a picture takes one", first, second.display())]
+    Twice {
+        /// The kind.
+        kind: Kind,
+        /// File name of the first.
+        first: String,
+        /// The second.
+        second: PathBuf,
+    },
+    /// A ground of an own table whose name is taken.
+    #[error("{}: there is a ground called {name:?} already: give it another name", path.display())]
+    GroundTwice {
+        /// The table.
+        path: PathBuf,
+        /// The name.
+        name: String,
+    },
     /// A table is there and cannot be used.
     #[error(transparent)]
     Table(#[from] TableError),
@@ -68,7 +92,7 @@ impl Data {
         let mut identities = Vec::new();
         macro_rules! load {
             ($view:ident) => {{
-                let (view, identity) = read(folder, Kind::$view.file_name(), $view::from_table)?;
+                let (view, identity) = in_folder(folder, Kind::$view.file_name(), $view::from_table)?;
                 identities.push(identity);
                 view
             }};
@@ -82,6 +106,7 @@ impl Data {
             sun: load!(Sun),
             observer: load!(Observer),
             ground_albedo: load!(GroundAlbedo),
+            own_aerosol: None,
             identities,
             folder: folder.into(),
         })
@@ -93,28 +118,101 @@ impl Data {
     /// [`DataError`] if its file is absent, cannot be used, or holds another biome or source.
     pub fn aerosol(&self, source: AerosolSource, biome: Biome) -> Result<(Aerosol, Identity), DataError> {
         let name = Aerosol::file_name(source, biome);
-        let (aerosol, identity) = read(&self.folder, name, Aerosol::from_table)?;
-        if (aerosol.source, aerosol.biome) != (source, biome) {
-            let text = format!("the table holds {} after {}", aerosol.biome, aerosol.source);
+        let (aerosol, identity) = in_folder(&self.folder, name, Aerosol::from_table)?;
+        if aerosol.origin != Origin::Biome(source, biome) {
+            let text = format!("the table holds {}", aerosol.origin);
             return Err(TableError::Inconsistent(text).at(&self.folder.join(&identity.file)).into());
         }
         Ok((aerosol, identity))
     }
 }
 
-/// Reads one file through its view.
-fn read<V>(folder: &Path, file: String, view: fn(&Table) -> Result<V, TableError>) -> Result<(V, Identity), DataError> {
+impl Data {
+    /// The same tables with some of one's own, by their paths: each replaces the one of its kind; the spectra of
+    /// grounds are added.
+    ///
+    /// # Errors
+    /// [`DataError`] with the first file that is absent or cannot be used, of a kind that was given before, or with a
+    /// ground whose name is taken.
+    pub fn with_tables(&self, paths: &[String]) -> Result<Self, DataError> {
+        let mut data = self.clone();
+        for path in paths {
+            data.take(Path::new(path))?;
+        }
+        Ok(data)
+    }
+
+    /// The own tables.
+    pub fn own(&self) -> impl Iterator<Item = &Identity> {
+        self.identities.iter().filter(|identity| identity.own)
+    }
+
+    fn take(&mut self, path: &Path) -> Result<(), DataError> {
+        let (table, mut identity) = read(path)?;
+        identity.own = true;
+        let (kind, named) = (table.kind, |error: TableError| error.at(path));
+        let adds = kind == Kind::GroundAlbedo;
+        if let Some(first) = self.own().find(|first| first.kind == kind && !adds) {
+            return Err(DataError::Twice { kind, first: first.file.clone(), second: path.into() });
+        }
+        match kind {
+            Kind::StandardAtmosphere => {
+                self.standard_atmosphere = StandardAtmosphere::from_table(&table).map_err(named)?;
+            }
+            Kind::Rayleigh => self.rayleigh = Rayleigh::from_table(&table).map_err(named)?,
+            Kind::OzoneCrossSection => {
+                self.ozone_cross_section = OzoneCrossSection::from_table(&table).map_err(named)?;
+            }
+            Kind::OzoneProfiles => self.ozone_profiles = OzoneProfiles::from_table(&table).map_err(named)?,
+            Kind::OzoneLayers => self.ozone_layers = OzoneLayers::from_table(&table).map_err(named)?,
+            Kind::Sun => self.sun = Sun::from_table(&table).map_err(named)?,
+            Kind::Observer => self.observer = Observer::from_table(&table).map_err(named)?,
+            Kind::Aerosol => self.own_aerosol = Some(Aerosol::from_table(&table).map_err(named)?),
+            Kind::GroundAlbedo => {
+                for (name, spectrum) in GroundAlbedo::from_table(&table).map_err(named)?.spectra {
+                    if self.ground_albedo.spectra.contains_key(&name) {
+                        return Err(DataError::GroundTwice { path: path.into(), name });
+                    }
+                    self.ground_albedo.spectra.insert(name, spectrum);
+                }
+            }
+        }
+        if !adds {
+            self.identities.retain(|other| other.kind != kind);
+        }
+        self.identities.push(identity);
+        Ok(())
+    }
+}
+
+/// Reads one file of the data folder through its view.
+fn in_folder<V>(
+    folder: &Path,
+    file: String,
+    view: fn(&Table) -> Result<V, TableError>,
+) -> Result<(V, Identity), DataError> {
     let path = folder.join(&file);
-    let bytes = match std::fs::read(&path) {
-        Ok(bytes) => bytes,
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+    let (table, identity) = match read(&path) {
+        Err(DataError::Table(TableError::Read { source, .. })) if source.kind() == std::io::ErrorKind::NotFound => {
             return Err(DataError::Absent { folder: folder.into(), file });
         }
-        Err(source) => return Err(TableError::Read { path, source }.into()),
+        other => other?,
     };
-    let named = |error: TableError| error.at(&path);
-    let table = decode(&bytes).map_err(named)?;
-    let seen = view(&table).map_err(named)?;
-    // A file that decodes has a checksum.
-    Ok((seen, Identity { file, title: table.title, checksum: checksum(&bytes).unwrap_or_default() }))
+    let seen = view(&table).map_err(|error| error.at(&path))?;
+    Ok((seen, identity))
+}
+
+/// Reads one file. Only the table is left of it when this returns.
+fn read(path: &Path) -> Result<(Table, Identity), DataError> {
+    let bytes = std::fs::read(path).map_err(|source| TableError::Read { path: path.into(), source })?;
+    let table = decode(&bytes).map_err(|error| error.at(path))?;
+    let identity = Identity {
+        file: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        kind: table.kind,
+        own: false,
+        title: table.title.clone(),
+        // A file that decodes has a checksum.
+        checksum: checksum(&bytes).unwrap_or_default(),
+    };
+    Ok((table, identity))
 }

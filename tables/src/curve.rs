@@ -1,22 +1,24 @@
 //! A field along one axis.
 
 use crate::{Axis, Interpolation, Outside, Scale, TableError};
+use std::sync::Arc;
 
 /// Values over one axis, looked up by the axis' own rules.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    axis: Axis,
+    axis: Arc<Axis>,
     scale: Scale,
     values: Vec<f64>,
 }
 
 impl Curve {
-    /// A curve through `values` at the nodes of `axis`.
+    /// A curve through `values` at the nodes of `axis`, which curves may share.
     ///
     /// # Errors
     /// [`TableError::Inconsistent`] if the lengths differ, a value is not
     /// finite, or a value on a logarithmic scale is not positive.
-    pub fn new(axis: Axis, scale: Scale, values: Vec<f64>) -> Result<Self, TableError> {
+    pub fn new(axis: impl Into<Arc<Axis>>, scale: Scale, values: Vec<f64>) -> Result<Self, TableError> {
+        let axis = axis.into();
         axis.validate()?;
         let fail = |text: String| Err(TableError::Inconsistent(format!("curve over {:?}: {text}", axis.name)));
         if axis.nodes.len() != values.len() {

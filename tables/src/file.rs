@@ -15,10 +15,15 @@
 
 use crate::{
     Axis, Field, Interpolation, Kind, Outside, Precision, Provenance, Scale, Spacing, Table, TableError, Tolerance,
+    excerpt,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
+
+mod replace;
+
+pub use replace::{check_writable, is_temporary, replace};
 
 /// The first eight bytes: not ASCII, with both kinds of line end and the end-of-file
 /// character of old systems, so that any text conversion shows.
@@ -26,6 +31,10 @@ pub const SIGNATURE: [u8; 8] = [0x89, b'A', b'I', b'R', b'L', b'\r', b'\n', 0x1a
 
 /// The version written, and the newest read.
 pub const VERSION: u32 = 1;
+
+/// The most bytes of a header: five times what the largest table of `data/` needs. What a header becomes in
+/// memory is up to 16 times its text; so it stays below 1 MiB.
+pub const MAX_HEADER: usize = 1 << 16;
 
 const PREAMBLE: usize = 32;
 
@@ -68,7 +77,8 @@ struct FieldHeader {
 /// The bytes of a table. The same table gives the same bytes.
 ///
 /// # Errors
-/// [`TableError::Inconsistent`] if the table does not validate.
+/// [`TableError::Inconsistent`] if the table does not validate, [`TableError::Header`] if its header would be longer
+/// than [`MAX_HEADER`].
 pub fn encode(table: &Table) -> Result<Vec<u8>, TableError> {
     table.validate()?;
     let mut payload = Vec::new();
@@ -120,7 +130,10 @@ pub fn encode(table: &Table) -> Result<Vec<u8>, TableError> {
     };
     let mut header = serde_json::to_vec(&header).map_err(|e| TableError::Header(e.to_string()))?;
     header.resize(header.len().next_multiple_of(8), b' ');
-    let header_length = u32::try_from(header.len()).map_err(|_| TableError::Header("longer than 4 GiB".into()))?;
+    if header.len() > MAX_HEADER {
+        return Err(too_long(header.len() as u64));
+    }
+    let header_length = header.len() as u32;
 
     let mut bytes = Vec::with_capacity(PREAMBLE + header.len() + payload.len());
     bytes.extend_from_slice(&SIGNATURE);
@@ -142,9 +155,18 @@ pub fn encode(table: &Table) -> Result<Vec<u8>, TableError> {
 /// The [`TableError`] of the first check that fails.
 pub fn decode(bytes: &[u8]) -> Result<Table, TableError> {
     let (header, payload) = split(bytes)?;
-    let header: Header = serde_json::from_slice(header).map_err(|e| TableError::Header(e.to_string()))?;
+    let header: Header = serde_json::from_slice(header).map_err(|e| TableError::Header(excerpt(&e.to_string())))?;
+    // Axes and fields do not overlap, so together they are no longer than the payload.
+    let mut budget = payload.len();
+    let mut spend = |name: &str, length: usize, precision: Precision| {
+        budget = budget
+            .checked_sub(length.saturating_mul(precision.bytes()))
+            .ok_or_else(|| TableError::Inconsistent(format!("{:?} does not fit in the payload", excerpt(name))))?;
+        Ok::<(), TableError>(())
+    };
     let mut axes = Vec::with_capacity(header.axes.len());
     for axis in header.axes {
+        spend(&axis.name, axis.length, Precision::F64)?;
         let nodes = numbers(payload, axis.offset, axis.length, Precision::F64, &axis.name)?;
         axes.push(Axis {
             name: axis.name,
@@ -163,16 +185,12 @@ pub fn decode(bytes: &[u8]) -> Result<Table, TableError> {
         settings: header.settings,
         provenance: header.provenance,
     };
-    let mut budget = payload.len();
     for field in header.fields {
         let mut length = 1_usize;
         for name in &field.axes {
             length = length.saturating_mul(table.axis(name)?.nodes.len());
         }
-        // Fields do not overlap, so together they are no longer than the payload.
-        budget = budget
-            .checked_sub(length.saturating_mul(field.precision.bytes()))
-            .ok_or_else(|| TableError::Inconsistent(format!("field {:?} does not fit in the payload", field.name)))?;
+        spend(&field.name, length, field.precision)?;
         let values = numbers(payload, field.offset, length, field.precision, &field.name)?;
         table.fields.push(Field {
             name: field.name,
@@ -220,6 +238,9 @@ fn split(bytes: &[u8]) -> Result<(&[u8], &[u8]), TableError> {
     if found > expected {
         return Err(TableError::Trailing { extra: found - expected });
     }
+    if header_length > MAX_HEADER as u64 {
+        return Err(too_long(header_length));
+    }
     // Both lengths are now at most the length of `bytes`.
     let (header, payload) = bytes[PREAMBLE..].split_at(header_length as usize);
     for (part, content, at) in [("header", header, 24), ("payload", payload, 28)] {
@@ -229,6 +250,10 @@ fn split(bytes: &[u8]) -> Result<(&[u8], &[u8]), TableError> {
         }
     }
     Ok((header, payload))
+}
+
+fn too_long(length: u64) -> TableError {
+    TableError::Header(format!("{length} bytes long, {MAX_HEADER} are possible"))
 }
 
 /// `length` numbers of the payload from `offset`.
@@ -243,7 +268,7 @@ fn numbers(
         .checked_mul(precision.bytes())
         .and_then(|size| offset.checked_add(size))
         .and_then(|end| payload.get(offset..end))
-        .ok_or_else(|| TableError::Inconsistent(format!("{name:?} lies outside the payload")))?;
+        .ok_or_else(|| TableError::Inconsistent(format!("{:?} lies outside the payload", excerpt(name))))?;
     Ok(match precision {
         Precision::F32 => bytes.as_chunks::<4>().0.iter().map(|b| f64::from(f32::from_le_bytes(*b))).collect(),
         Precision::F64 => bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect(),
@@ -266,8 +291,7 @@ pub fn read(path: &Path) -> Result<Table, TableError> {
     decode(&bytes).map_err(|e| e.at(path))
 }
 
-/// Writes a table: to a temporary name in the same folder, synced, then
-/// renamed, so that the final name never holds half a file. Gives the size in bytes.
+/// Writes a table by [`replace`], so that the final name never holds half a file. Gives the size in bytes.
 ///
 /// # Errors
 /// [`TableError::Write`], with the temporary file removed, or [`TableError::Inconsistent`].
@@ -275,27 +299,4 @@ pub fn write(path: &Path, table: &Table) -> Result<u64, TableError> {
     let bytes = encode(table).map_err(|e| e.at(path))?;
     replace(path, &bytes).map_err(|source| TableError::Write { path: path.into(), source })?;
     Ok(bytes.len() as u64)
-}
-
-/// Puts `bytes` under `path` in one step: temporary file in the same folder, sync, rename.
-///
-/// # Errors
-/// What the system says; the temporary file is then removed and `path` is as it was.
-pub fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    use std::io::Write;
-    let name = path.file_name().ok_or_else(|| std::io::Error::other("the path names no file"))?;
-    let mut temporary = name.to_os_string();
-    temporary.push(format!(".tmp-{}", std::process::id()));
-    let temporary = path.with_file_name(temporary);
-    let result = (|| {
-        let mut file = std::fs::File::create(&temporary)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        std::fs::rename(&temporary, path)
-    })();
-    if result.is_err() {
-        // The first error is the one to report; a leftover is only untidy.
-        let _ = std::fs::remove_file(&temporary);
-    }
-    result
 }

@@ -11,7 +11,9 @@
 mod axis;
 mod curve;
 mod error;
+mod excerpt;
 pub mod file;
+mod names;
 mod table;
 pub mod units;
 pub mod views;
@@ -19,4 +21,6 @@ pub mod views;
 pub use axis::{Axis, Interpolation, Outside, Position, Spacing};
 pub use curve::Curve;
 pub use error::TableError;
+pub use excerpt::excerpt;
+pub use names::nearest;
 pub use table::{Field, Kind, Precision, Provenance, Scale, Table, Tolerance};

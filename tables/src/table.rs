@@ -1,8 +1,12 @@
 //! A table in memory: axes, fields, settings and where the numbers came from.
 
-use crate::{Axis, Curve, TableError};
+use crate::{Axis, Curve, TableError, excerpt};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The most bytes of a name or a unit.
+const MAX_NAME: usize = 100;
 
 /// What a table holds. [`crate::views`] has the typed reading of each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -141,11 +145,11 @@ pub struct Field {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
-    /// Path below `raw-data/`, with forward slashes.
+    /// Path below `raw-data/`, with forward slashes; of an own input the name of the file alone.
     pub file: String,
     /// What the file holds.
     pub title: String,
-    /// Publication.
+    /// Publication, or [`Provenance::OWN`].
     pub citation: String,
     /// Where the numbers were read.
     pub source: String,
@@ -153,6 +157,17 @@ pub struct Provenance {
     pub licence: String,
     /// SHA-256 of the file in lower-case hexadecimal.
     pub sha256: String,
+}
+
+impl Provenance {
+    /// The citation of a file that somebody made for themselves.
+    pub const OWN: &str = "own input";
+
+    /// Whether the file is somebody's own and none of `raw-data/`.
+    #[must_use]
+    pub fn is_own(&self) -> bool {
+        self.citation == Self::OWN
+    }
 }
 
 /// A table: what a file of `data/` holds.
@@ -173,13 +188,18 @@ pub struct Table {
 }
 
 impl Table {
-    /// Checks the axes, that names are unique, that each field has as many
+    /// Checks the axes, that names are unique and no longer than 100 bytes, as units are, that each field has as many
     /// finite values as its axes have nodes, and that logarithmic fields are positive.
     ///
     /// # Errors
     /// [`TableError::Inconsistent`] naming what is wrong.
     pub fn validate(&self) -> Result<(), TableError> {
         let fail = |text: String| Err(TableError::Inconsistent(text));
+        let units = self.axes.iter().map(|a| &a.unit).chain(self.fields.iter().map(|f| &f.unit));
+        let names = self.axes.iter().map(|a| &a.name).chain(self.fields.iter().map(|f| &f.name));
+        if let Some(long) = names.chain(units).find(|name| name.len() > MAX_NAME) {
+            return fail(format!("a name or unit of more than {MAX_NAME} bytes: {:?}", excerpt(long)));
+        }
         let mut names: Vec<&str> = Vec::new();
         for name in self.axes.iter().map(|a| &a.name).chain(self.fields.iter().map(|f| &f.name)) {
             if names.contains(&name.as_str()) {
@@ -253,10 +273,8 @@ impl Table {
             return Err(TableError::WrongUnit { name: name.into(), expected: unit.into(), found: field.unit.clone() });
         }
         if field.axes != axes {
-            return Err(TableError::Inconsistent(format!(
-                "field {name:?} is over {:?}, {axes:?} is needed",
-                field.axes
-            )));
+            let found = excerpt(&format!("{:?}", field.axes));
+            return Err(TableError::Inconsistent(format!("field {name:?} is over {found}, {axes:?} is needed")));
         }
         Ok(field)
     }
@@ -266,19 +284,28 @@ impl Table {
     /// # Errors
     /// As [`Table::field`], and [`TableError::WrongUnit`] for the axis.
     pub fn curve(&self, name: &str, unit: &str, axis: (&str, &str)) -> Result<Curve, TableError> {
-        let field = self.field(name, unit, &[axis.0])?;
-        let found = self.axis(axis.0)?;
-        if found.unit != axis.1 {
-            return Err(TableError::WrongUnit {
-                name: axis.0.into(),
-                expected: axis.1.into(),
-                found: found.unit.clone(),
-            });
+        self.curve_sharing(name, unit, axis, &mut BTreeMap::new())
+    }
+
+    /// As [`Table::curve`], for a view of many curves over the same axis: each axis is copied once, into `shared`.
+    pub(crate) fn curve_sharing<'a>(
+        &'a self,
+        name: &str,
+        unit: &str,
+        (axis, axis_unit): (&str, &str),
+        shared: &mut BTreeMap<&'a str, Arc<Axis>>,
+    ) -> Result<Curve, TableError> {
+        let field = self.field(name, unit, &[axis])?;
+        let found = self.axis(axis)?;
+        if found.unit != axis_unit {
+            let (expected, found) = (axis_unit.into(), found.unit.clone());
+            return Err(TableError::WrongUnit { name: axis.into(), expected, found });
         }
-        Curve::new(found.clone(), field.scale, field.values.clone())
+        let axis = shared.entry(&found.name).or_insert_with(|| Arc::new(found.clone()));
+        Curve::new(Arc::clone(axis), field.scale, field.values.clone())
     }
 
     fn missing(&self, what: &'static str, name: &str) -> TableError {
-        TableError::Missing { what, name: name.into(), kind: self.kind.to_string() }
+        TableError::Missing { what, name: excerpt(name), kind: self.kind.to_string() }
     }
 }

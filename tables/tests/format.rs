@@ -188,3 +188,30 @@ fn errors_name_the_file() {
     let error = file::read(std::path::Path::new("no/such.table")).expect_err("absent");
     assert!(error.to_string().contains("such.table"), "{error}");
 }
+
+#[test]
+fn axes_that_share_their_bytes_and_headers_beyond_the_limit_are_refused() {
+    // Each node list alone fits; together they are longer than the payload.
+    let axis = r#"{"name":"NAME","unit":"1","length":17,"spacing":"irregular","interpolation":"linear","outside":"error","offset":0},"#;
+    let bytes = with_header(|text| {
+        let many: String = (0..20).map(|i| axis.replace("NAME", &format!("n{i}"))).collect();
+        text.replacen("\"axes\":[", &format!("\"axes\":[{many}"), 1)
+    });
+    let error = file::decode(&bytes).expect_err("the same bytes were read twenty times").to_string();
+    assert!(error.contains("does not fit in the payload"), "{error}");
+
+    let long = with_header(|text| text.to_owned() + &" ".repeat(file::MAX_HEADER));
+    let error = file::decode(&long).expect_err("a long header was read").to_string();
+    assert!(error.contains("65536 are possible"), "{error}");
+    let mut table = sample();
+    table.title = "x".repeat(file::MAX_HEADER);
+    assert!(matches!(file::encode(&table), Err(TableError::Header(_))), "a long header was written");
+}
+
+#[test]
+fn a_name_that_is_no_name_is_quoted_in_part() {
+    let name = "n".repeat(60_000);
+    let bytes = with_header(|text| text.replacen("\"name\":\"b\"", &format!("\"name\":\"{name}\""), 1));
+    let error = file::decode(&bytes).expect_err("a name of 60 kB was taken").to_string();
+    assert!(error.len() < 1000, "an error of {} bytes", error.len());
+}

@@ -1,9 +1,14 @@
 //! The command line. Results go to standard output, progress and errors to standard error.
 
 mod aerosol;
-#[cfg(any(feature = "plot", feature = "study"))]
+mod coefficients;
+#[cfg(feature = "study")]
 mod figures;
+mod files;
+mod import;
+mod lint;
 mod mie;
+mod output;
 
 use clap::{Args, Parser, Subcommand};
 use std::io::Write;
@@ -11,7 +16,6 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use tools::build::{self, Built, CheckReport, Target};
-use tools::inspect;
 
 /// Makes, checks and shows the tables that Airlight's renderer reads.
 #[derive(Parser)]
@@ -25,15 +29,22 @@ struct Cli {
 enum Command {
     /// Make every table from the raw data, or check that the tables are what the raw data make
     Build(BuildArgs),
-    /// Show what a table holds: settings, axes, fields with their ranges, and where it came from
-    Inspect {
-        /// A table, such as data/rayleigh.table
-        file: PathBuf,
-    },
+    /// Make a table of a file of your own: an aerosol, a radiosonde, an ozone sonde, a solar spectrum, an albedo
+    Import(import::ImportArgs),
+    /// Show what tables or CSV files hold: settings, axes, fields with their ranges, and where it came from
+    Inspect(files::InspectArgs),
+    /// Number densities, cross-sections, coefficients, optical depths and phase functions of the air over a place
+    Coefficients(coefficients::CoefficientsArgs),
+    /// Write a table as CSV, JSON or Parquet
+    Export(files::ExportArgs),
+    /// Citations and licences of everything that the tables and figures are made from
+    Sources(files::SourcesArgs),
     /// Scatter light by spheres: efficiencies and amplitudes of every line of a CSV file
     Mie(mie::MieArgs),
     /// The aerosols of data/: extinction, albedo, asymmetry, Angstrom exponent and optical depth of each biome
     Biomes(aerosol::BiomesArgs),
+    /// Find what cannot be right in tables and CSV files: units, swapped columns, impossible values
+    Lint(lint::LintArgs),
     /// Draw what the tables hold: SVG, PNG and CSV of each figure
     #[cfg(feature = "plot")]
     Plot(figures::PlotArgs),
@@ -78,9 +89,14 @@ pub(crate) fn run() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Build(args) if args.check => check_tables(&args),
         Command::Build(args) => build_tables(&args),
-        Command::Inspect { file } => show(&file),
+        Command::Import(args) => import::import(&args),
+        Command::Inspect(args) => files::show(&args),
+        Command::Coefficients(args) => coefficients::write(&args),
+        Command::Export(args) => files::export(&args),
+        Command::Sources(args) => files::name_sources(&args),
         Command::Mie(args) => mie::solve(&args),
         Command::Biomes(args) => aerosol::biomes(&args),
+        Command::Lint(args) => return lint::run(&args),
         #[cfg(feature = "plot")]
         Command::Plot(args) => figures::draw(&args),
         #[cfg(feature = "study")]
@@ -155,20 +171,6 @@ fn verdict(args: &BuildArgs, report: &CheckReport) -> String {
         parts.push(format!("{} written by no build", report.foreign.join(", ")));
     }
     format!("{}: {}", args.data.display(), parts.join("; "))
-}
-
-fn show(file: &std::path::Path) -> Result<(), String> {
-    let table = tables::file::read(file).map_err(|e| e.to_string())?;
-    print(&inspect::describe(&table))
-}
-
-/// A text on standard output.
-fn print(text: &str) -> Result<(), String> {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        // A reader that has seen enough, such as `head`.
-        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        other => other.map_err(|e| format!("standard output: {e}")),
-    }
 }
 
 fn size(bytes: u64) -> String {

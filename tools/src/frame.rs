@@ -42,6 +42,18 @@ impl Frame {
         Ok(self.0.column(name)?.str()?.iter().map(|text| text.unwrap_or_default().to_owned()).collect())
     }
 
+    /// A frame of columns of different lengths: the shorter end in gaps.
+    ///
+    /// # Errors
+    /// [`PolarsError`] if a name is used twice.
+    pub fn ragged<N: Into<String>>(columns: Vec<(N, Vec<f64>)>) -> Result<Self, PolarsError> {
+        let longest = columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
+        Self::new(columns.into_iter().map(|(name, mut values)| {
+            values.resize(longest, f64::NAN);
+            (name, values)
+        }))
+    }
+
     /// The columns.
     #[must_use]
     pub fn data(&self) -> &DataFrame {

@@ -1,6 +1,9 @@
-//! A table in words, for people.
+//! A table, or a CSV file of ours, in words, for people.
 
-use std::fmt::Write;
+use crate::export::range;
+use crate::raw::{Fault, Header, RawError};
+use crate::text::{aligned, six_digits};
+use std::collections::BTreeSet;
 use tables::{Axis, Field, Table};
 
 /// Title, settings, axes, fields with their ranges, and provenance, as aligned text that ends with
@@ -24,24 +27,56 @@ pub fn describe(table: &Table) -> String {
             ("SHA-256", &input.sha256),
         ];
         let rows = rows.into_iter().map(|(key, value)| vec![key.to_owned(), value.clone()]).collect();
-        section(&mut text, &format!("from raw-data/{}", input.file), rows);
+        let folder = if input.is_own() { "" } else { "raw-data/" };
+        section(&mut text, &format!("from {folder}{}", input.file), rows);
     }
     text
 }
 
+/// What a CSV file of ours holds (of `raw-data/`, or written by this program): its `# key: value` lines, and the range
+/// or the number of different words of each column, as text that ends with a line end.
+///
+/// # Errors
+/// [`RawError`] with the line of what is no CSV, or of a row whose length differs from the first.
+pub fn describe_csv(file: &str, bytes: &[u8]) -> Result<String, RawError> {
+    let fail = |fault| RawError::new(file, fault);
+    let content = std::str::from_utf8(bytes).map_err(|_| fail(Fault::NotUtf8))?;
+    let header = Header::parse(file, content)?;
+    let mut reader = csv::Reader::from_reader(&content.as_bytes()[header.text.len()..]);
+    let malformed = |e: csv::Error| fail(Fault::MalformedRow { found: e.to_string() });
+    let names = reader.headers().map_err(malformed)?.clone();
+    let rows = reader.records().collect::<Result<Vec<_>, _>>().map_err(malformed)?;
+    if rows.is_empty() {
+        return Err(fail(Fault::NoRows));
+    }
+    let said = header.entries().filter(|(key, _)| !key.starts_with("unit "));
+    let mut text =
+        aligned(&said.map(|(key, value)| vec![(*key).into(), (*value).into()]).collect::<Vec<_>>(), 0, |_| false);
+    let column = |(i, name): (usize, &str)| {
+        let cells: Vec<&str> = rows.iter().filter_map(|row| row.get(i)).filter(|cell| !cell.is_empty()).collect();
+        let numbers: Option<Vec<f64>> = cells.iter().map(|cell| cell.parse().ok()).collect();
+        let unit = header.find(&format!("unit {name}")).filter(|unit| *unit != "text").unwrap_or("1");
+        let holds = match numbers {
+            Some(numbers) if !numbers.is_empty() => ranged(range(&numbers)) + &suffix(unit),
+            _ => format!("{} words", cells.iter().collect::<BTreeSet<_>>().len()),
+        };
+        let gaps = rows.len() - cells.len();
+        vec![name.into(), holds, if gaps == 0 { String::new() } else { format!("{gaps} empty") }]
+    };
+    section(&mut text, &format!("{} rows", rows.len()), names.iter().enumerate().map(column).collect());
+    Ok(text)
+}
+
 /// A heading and rows in aligned columns; nothing if there are no rows.
 fn section(text: &mut String, heading: &str, rows: Vec<Vec<String>>) {
-    if rows.is_empty() {
-        return;
+    if !rows.is_empty() {
+        *text += &format!("\n{heading}\n{}", aligned(&rows, 2, |_| false));
     }
-    let _ = writeln!(text, "\n{heading}"); // writing to a String does not fail
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |i: usize| rows.iter().filter_map(|row| row.get(i)).map(|cell| cell.chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    for row in &rows {
-        let cells: Vec<String> = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}")).collect();
-        let _ = writeln!(text, "  {}", cells.join("  ").trim_end());
-    }
+}
+
+/// One number, or the lowest and the highest.
+fn ranged((low, high): (f64, f64)) -> String {
+    if low == high { six_digits(low) } else { format!("{} to {}", six_digits(low), six_digits(high)) }
 }
 
 fn axis(axis: &Axis) -> Vec<String> {
@@ -57,28 +92,15 @@ fn axis(axis: &Axis) -> Vec<String> {
 }
 
 fn field(field: &Field) -> Vec<String> {
-    let low = field.values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = field.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let range = if low == high { number(low) } else { format!("{} to {}", number(low), number(high)) };
     let error = field.interpolation_error.map_or("nodes are the data".into(), |e| format!("interpolation error {e:e}"));
     vec![
         field.name.clone(),
-        format!("{range}{}", suffix(&field.unit)),
+        ranged(range(&field.values)) + &suffix(&field.unit),
         if field.axes.is_empty() { "one value".into() } else { format!("over {}", field.axes.join(" x ")) },
         format!("{:?}", field.precision).to_lowercase(),
         format!("{:?}", field.scale).to_lowercase(),
         error,
     ]
-}
-
-/// Six digits, in powers of ten where they are shorter to read.
-fn number(x: f64) -> String {
-    if x == 0.0 || (1e-3..1e6).contains(&x.abs()) {
-        let decimals = 5 - x.abs().max(1.0).log10() as i32;
-        format!("{x:.*}", decimals.max(0) as usize)
-    } else {
-        format!("{x:.5e}")
-    }
 }
 
 /// A unit after a space; nothing for none.
@@ -118,10 +140,12 @@ mod tests {
     }
 
     #[test]
-    fn numbers_have_six_digits() {
-        assert_eq!(number(101_325.0), "101325");
-        assert_eq!(number(0.05), "0.05000");
-        assert_eq!(number(2.546972e25), "2.54697e25");
-        assert_eq!(number(-288.15), "-288.150");
+    fn a_csv_is_described_by_its_header_and_its_columns() {
+        let text = "# title: a title\n# unit x_nm: nm\n# unit name: text\nx_nm,name,y\n300,a,\n310.5,b,2\n320,a,\n";
+        let expected = "title  a title\n\n3 rows\n  x_nm  300.000 to 320.000 nm\n  name  2 words\n  y     2.00000                2 empty\n";
+        assert_eq!(describe_csv("a.csv", text.as_bytes()).expect("a CSV"), expected);
+        let error = describe_csv("a.csv", b"# title: a\nx,y\n1,2\n1\n").expect_err("a short row").to_string();
+        assert!(error.starts_with("a.csv: malformed row"), "{error}");
+        assert!(describe_csv("a.csv", b"x,y\n").is_err(), "a file without rows was taken");
     }
 }

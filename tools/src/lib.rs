@@ -1,23 +1,34 @@
 //! Airlight's data tool: from measured inputs in `raw-data/` to the tables in `data/`.
 //!
 //! [`raw`] reads the sources and converts them to SI; [`molecular`] and [`profile`] compute;
-//! [`build`] writes the tables; [`data`] reads them again, [`column`] says what they mean over one place, [`inspect`]
-//! puts one into words; `plot` draws what the tables hold and `study` compares, each behind a feature of its name.
+//! [`build`] writes the tables, and [`own`] some of people's own files; [`data`] reads them again, [`mod@column`] says
+//! what they mean over one place, [`inspect`] puts one into words, [`coefficients`] and [`export`] give out numbers as a
+//! [`sheet`] with its [`sources`], [`lint`] judges tables and CSV files; `study` compares and `plot` draws what the
+//! tables hold, each behind a feature of its name.
 
 pub mod aerosol;
 pub mod build;
+pub mod coefficients;
 pub mod column;
 pub mod data;
-#[cfg(any(feature = "plot", feature = "study"))]
+pub mod export;
+#[cfg(feature = "study")]
 pub mod frame;
 pub mod inspect;
+pub mod lint;
 pub mod mie;
 pub mod mie_cases;
 pub mod mie_tasks;
 pub mod molecular;
+pub mod numbers;
+pub mod own;
 #[cfg(feature = "plot")]
 pub mod plot;
 pub mod profile;
 pub mod raw;
+pub mod records;
+pub mod sheet;
+pub mod sources;
 #[cfg(feature = "study")]
 pub mod study;
+pub mod text;

@@ -1,7 +1,9 @@
 //! Timed tasks that compare Mie solvers: (a) efficiencies of many spheres of one index, (b) sums over size
 //! distributions with a phase function. Files in the convention m = n - ik, lengths in um, as other programs write them.
 
-use crate::mie::{AngularTable, Efficiencies, Instructions, MieError, RefractiveIndex, Spheres, terms};
+use crate::mie::{
+    AngularTable, Efficiencies, Instructions, MieError, RefractiveIndex, SIZE_PARAMETERS, Spheres, terms,
+};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -106,12 +108,20 @@ pub fn distributions(input: &str, instructions: Instructions, repeats: u32) -> R
         let m = RefractiveIndex::new(mode.m_re, -mode.m_im)?;
         jobs.extend(mode.wavelengths.iter().enumerate().map(|(i, &wavelength)| (name, mode, m, i, wavelength)));
     }
+    let sizes =
+        jobs.iter().flat_map(|(_, mode, _, _, wavelength)| mode.r.iter().map(move |r| 2.0 * PI * r / wavelength));
+    let mut largest = 0.0_f64;
+    for x in sizes {
+        // The solver refuses the same, but the table comes first, and the largest tells its length.
+        if !(SIZE_PARAMETERS.0..=SIZE_PARAMETERS.1).contains(&x) {
+            return Err(MieError::Size { x }.into());
+        }
+        largest = largest.max(x);
+    }
     let mut solver = Spheres::with(instructions);
     let (found, fastest) = timed(repeats, || {
         // The table of angular functions is part of the work.
-        let largest =
-            jobs.iter().flat_map(|(_, mode, _, _, wavelength)| mode.r.iter().map(move |r| 2.0 * PI * r / wavelength));
-        let table = AngularTable::new(&cosines, terms(largest.fold(0.0, f64::max)))?;
+        let table = AngularTable::new(&cosines, terms(largest))?;
         let one = |&(_, mode, m, _, wavelength): &(&String, &Mode, RefractiveIndex, usize, f64)| {
             let k = 2.0 * PI / wavelength;
             solver.sum(m, mode.r.iter().zip(&mode.w).map(|(r, w)| (k * r, *w)), &table)
@@ -138,4 +148,16 @@ pub fn distributions(input: &str, instructions: Instructions, repeats: u32) -> R
 /// The cosine of an angle in degrees, exact where it is a whole number.
 fn cosine(degrees: f64) -> f64 {
     if degrees == 90.0 { 0.0 } else { degrees.to_radians().cos() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_radius_out_of_range_is_refused_before_the_work() {
+        let input = r#"{"angles_deg": [0.0, 90.0], "dust": {"wavelengths": [0.5], "r": [1e30], "w": [1.0], "m_re": 1.5, "m_im": -0.01}}"#;
+        let error = distributions(input, Instructions::best(), 1).expect_err("too large");
+        assert!(error.to_string().starts_with("size parameter 1.25"), "{error}");
+    }
 }

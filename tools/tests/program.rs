@@ -188,7 +188,12 @@ fn inspect_shows_a_table_and_refuses_what_is_none() {
     {
         assert!(text.contains(expected), "{expected:?} is not in {text}");
     }
-    let refused = inspect(&raw_dir().join("bucholtz-1995/king-factor.csv"));
+    let shown = inspect(&raw_dir().join("bucholtz-1995/king-factor.csv"));
+    let text = String::from_utf8_lossy(&shown.stdout).into_owned();
+    for expected in ["10.1364/AO.34.002765", "36 rows", "wavelength_nm", "200.000 to 1000.00 nm"] {
+        assert!(shown.status.success() && text.contains(expected), "{expected:?} is not in {text}");
+    }
+    let refused = inspect(&raw_dir().join("README.md"));
     assert_eq!(refused.status.code(), Some(1));
     assert!(words(&refused).contains("not an Airlight table"), "{}", words(&refused));
 }

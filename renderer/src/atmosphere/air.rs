@@ -47,12 +47,10 @@ pub enum AirError {
     #[error("the ozone profile of this source is empty and cannot be scaled to {0} DU")]
     NoOzone(f64),
     /// A humidity for an aerosol whose table has only one.
-    #[error("humidity is {percent} %, but {biome} after {source_name} does not take up water: leave it out")]
+    #[error("humidity is {percent} %, but {aerosol} does not take up water: leave it out")]
     Dry {
-        /// The biome.
-        biome: String,
-        /// The source of its optics.
-        source_name: String,
+        /// Where the aerosol comes from.
+        aerosol: String,
         /// What was asked.
         percent: f64,
     },

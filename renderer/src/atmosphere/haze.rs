@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use tables::TableError;
 use tables::units::KM;
-use tables::views::{Aerosol, REFERENCE_WAVELENGTH_NM, Species};
+use tables::views::{Aerosol, Origin, REFERENCE_WAVELENGTH_NM, Species};
 
 /// Koschmieder's constant for a contrast threshold of 2 %: visibility = 3.912 / extinction.
 pub const KOSCHMIEDER: f64 = 3.912;
@@ -68,8 +68,7 @@ impl Haze {
         if let Some(percent) = humidity {
             let takes = |s: &Species| s.humidity_range_percent().0 < s.humidity_range_percent().1;
             if !aerosol.species.iter().any(takes) {
-                let (biome, source) = (aerosol.biome, aerosol.source);
-                return Err(AirError::Dry { biome: biome.to_string(), source_name: source.to_string(), percent });
+                return Err(AirError::Dry { aerosol: aerosol.origin.to_string(), percent });
             }
         }
         let own_depth = aerosol.optical_depth(humidity, REFERENCE_WAVELENGTH_NM)?;
@@ -93,6 +92,12 @@ impl Haze {
             visibility_km: KOSCHMIEDER / (factor * own_extinction + molecular) / KM,
             aerosol,
         })
+    }
+
+    /// Where the aerosol comes from.
+    #[must_use]
+    pub fn origin(&self) -> &Origin {
+        &self.aerosol.origin
     }
 
     /// Vertical optical depth at 550 nm of the whole column, whatever the top of the scene.

@@ -1,8 +1,12 @@
 //! The file of cases as it stands, before any physics.
 
+use super::bounded;
 use serde::Deserialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
+use tables::excerpt;
 
 /// Which cases of a file are asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +35,7 @@ pub enum CasesError {
         source: std::io::Error,
     },
     /// Not JSON, or not of the expected form; the message has line and column.
-    #[error("{}: not a file of cases: {source}", path.display())]
+    #[error("{}: not a file of cases: {}", path.display(), excerpt(&source.to_string()))]
     Malformed {
         /// The file.
         path: PathBuf,
@@ -39,7 +43,7 @@ pub enum CasesError {
         source: serde_json::Error,
     },
     /// The same identifier twice.
-    #[error("{}: two cases named {id:?}", path.display())]
+    #[error("{}: two cases named {:?}", path.display(), excerpt(id))]
     Twice {
         /// The file.
         path: PathBuf,
@@ -52,42 +56,47 @@ pub enum CasesError {
 #[derive(Debug, Clone, Deserialize)]
 pub struct Suite {
     /// Profiles by name.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "bounded::map")]
     pub(super) profiles: BTreeMap<String, Profile>,
-    pub(super) cases: Vec<Case>,
+    #[expect(clippy::vec_box, reason = "the list grows by doubling, which must not double the cases themselves")]
+    pub(super) cases: Vec<Box<Case>>,
 }
 
 /// A piecewise linear atmosphere of a spherical planet.
 #[derive(Debug, Clone, Deserialize)]
 pub(super) struct Profile {
+    #[serde(deserialize_with = "bounded::list")]
     pub(super) z_km: Vec<f64>,
     /// One kind of scatterer with its absorber...
+    #[serde(default, deserialize_with = "bounded::optional_list")]
     pub(super) scattering_per_km: Option<Vec<f64>>,
+    #[serde(default, deserialize_with = "bounded::optional_list")]
     pub(super) absorption_per_km: Option<Vec<f64>>,
     /// ...or several components.
     pub(super) components: Option<Components>,
 }
 
-/// Components as a list or by name.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(untagged)]
-pub(super) enum Components {
-    List(Vec<ProfileComponent>),
-    Named(BTreeMap<String, ProfileComponent>),
-}
+/// Components, from a list or by name.
+#[derive(Debug, Clone)]
+pub(super) struct Components(Vec<ProfileComponent>);
 
 impl Components {
-    pub(super) fn all(&self) -> Vec<&ProfileComponent> {
-        match self {
-            Self::List(list) => list.iter().collect(),
-            Self::Named(map) => map.values().collect(),
-        }
+    pub(super) fn all(&self) -> &[ProfileComponent] {
+        &self.0
+    }
+}
+
+impl<'de> Deserialize<'de> for Components {
+    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        bounded::list_or_values(from).map(Self)
     }
 }
 
 #[derive(Debug, Clone, Deserialize)]
 pub(super) struct ProfileComponent {
+    #[serde(deserialize_with = "bounded::list")]
     pub(super) scattering_per_km: Vec<f64>,
+    #[serde(deserialize_with = "bounded::list")]
     pub(super) absorption_per_km: Vec<f64>,
     pub(super) phase: (String, f64),
 }
@@ -97,6 +106,7 @@ pub(super) struct ProfileComponent {
 pub(super) struct Layer {
     pub(super) tau: f64,
     pub(super) ssa: f64,
+    #[serde(deserialize_with = "bounded::list")]
     pub(super) phase: Vec<(f64, String, f64)>,
 }
 
@@ -109,9 +119,11 @@ pub(super) struct Case {
     #[serde(default = "scalar")]
     pub(super) polarization: String,
     pub(super) orders: String,
+    #[serde(default, deserialize_with = "bounded::optional_list")]
     pub(super) layers: Option<Vec<Layer>>,
     pub(super) profile: Option<String>,
     pub(super) planet_radius_km: Option<f64>,
+    #[serde(default, deserialize_with = "bounded::optional_list")]
     pub(super) phase: Option<Vec<(f64, String, f64)>>,
     pub(super) sza_deg: f64,
     pub(super) albedo: f64,
@@ -133,19 +145,27 @@ fn one() -> f64 {
     1.0
 }
 
-/// Reads a file of cases.
+/// Reads a file of cases. It is never in memory as a whole; what it says takes at most four times its size and 1 MiB.
 ///
 /// # Errors
 /// [`CasesError`] if it cannot be read, is not of the form, or names a case twice.
 pub fn read(path: &Path) -> Result<Suite, CasesError> {
-    let text = std::fs::read(path).map_err(|source| CasesError::Read { path: path.into(), source })?;
-    let suite: Suite =
-        serde_json::from_slice(&text).map_err(|source| CasesError::Malformed { path: path.into(), source })?;
-    let mut seen = std::collections::BTreeSet::new();
-    for case in &suite.cases {
-        if !seen.insert(&case.id) {
-            return Err(CasesError::Twice { path: path.into(), id: case.id.clone() });
-        }
+    let file = File::open(path).map_err(|source| CasesError::Read { path: path.into(), source })?;
+    parse(path, BufReader::new(file))
+}
+
+/// Reads cases from a stream, which errors call `path`.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(path: &Path, stream: impl Read) -> Result<Suite, CasesError> {
+    let suite: Suite = serde_json::from_reader(stream).map_err(|source| match source.io_error_kind() {
+        Some(_) => CasesError::Read { path: path.into(), source: source.into() },
+        None => CasesError::Malformed { path: path.into(), source },
+    })?;
+    let mut seen = BTreeSet::new();
+    match suite.cases.iter().find(|case| !seen.insert(&case.id)) {
+        Some(twice) => Err(CasesError::Twice { path: path.into(), id: twice.id.clone() }),
+        None => Ok(suite),
     }
-    Ok(suite)
 }

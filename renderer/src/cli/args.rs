@@ -22,6 +22,10 @@ pub(super) struct RenderArgs {
     /// Folder of the tables
     #[arg(long, value_name = "DIR", default_value = "data", help_heading = "Files")]
     pub data: PathBuf,
+    /// A table of your own (`airlight-tools import`): it replaces, for this picture, the one of its kind in --data, or
+    /// adds a ground for --albedo; once for each kind. Those of the scene are then left out
+    #[arg(long = "table", value_name = "FILE", help_heading = "Files")]
+    pub tables: Vec<String>,
     /// Write the spectral channels too (S0.550,000nm in W m^-2 sr^-1 nm^-1)
     #[arg(long, help_heading = "Files")]
     pub spectral: bool,
@@ -109,7 +113,7 @@ pub(super) struct RenderArgs {
     /// Ozone profile: ml (McPeters-Labow, by month and latitude) or arosa (by month) [default: ml]
     #[arg(long, value_name = "SOURCE", help_heading = "Sun, air and ground")]
     pub ozone_source: Option<OzoneName>,
-    /// Reflectance of the ground: 0 to 1, or dry-soil, wet-soil, ocean [default: 0.1]
+    /// Reflectance of the ground: 0 to 1, or dry-soil, wet-soil, ocean, or one of a --table [default: 0.1]
     #[arg(long, value_name = "X|NAME", help_heading = "Sun, air and ground")]
     pub albedo: Option<Albedo>,
 
@@ -280,8 +284,11 @@ impl RenderArgs {
         let biome = self.aerosol.biome.map_or(base.biome, |name| name.0);
         let chosen =
             [("aerosol-source", self.aerosol.aerosol_source.is_some()), ("phase", self.aerosol.phase.is_some())];
-        if let (None, Some((flag, _))) = (biome, chosen.iter().find(|(_, given)| *given)) {
-            return Err(SceneError::Refused(format!("{flag} says something of an aerosol: name its biome too")));
+        let tables = if self.tables.is_empty() { base.tables } else { self.tables.clone() };
+        // An own aerosol has a phase function too, but no source to choose.
+        let needs_biome = |flag: &str| tables.is_empty() || flag == "aerosol-source";
+        if let (None, Some((flag, _))) = (biome, chosen.iter().find(|(flag, given)| *given && needs_biome(flag))) {
+            return Err(SceneError::no_aerosol(flag));
         }
         // An amount on the command line replaces that of the scene, of whichever kind; so does no aerosol at all.
         let none = biome.is_none() && self.aerosol.biome.is_some();
@@ -303,6 +310,7 @@ impl RenderArgs {
             visibility_km: self.aerosol.visibility.or(base.visibility_km.filter(|_| !amount)),
             turbidity: self.aerosol.turbidity.or(base.turbidity.filter(|_| !amount)),
             phase: self.aerosol.phase.map_or(base.phase, Into::into),
+            tables,
             albedo: self.albedo.clone().unwrap_or(base.albedo),
             wavelengths_nm: self.wavelengths.clone().unwrap_or(base.wavelengths_nm),
             camera: self.camera.unwrap_or(base.camera),

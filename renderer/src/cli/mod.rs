@@ -3,9 +3,9 @@
 //! Results go to files, and what they are to standard output; progress and errors
 //! go to standard error. Exit codes: 0 done, 1 error, 2 a flag or a scene that cannot
 //! be, 130 stopped by Ctrl-C (what was there is written first).
-#![expect(clippy::print_stdout, clippy::print_stderr, reason = "the command line is where Airlight speaks")]
 
 mod args;
+mod output;
 mod progress;
 mod radiance;
 mod render;
@@ -59,14 +59,19 @@ pub fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Radiance(args) => radiance::run(&args),
     };
-    match outcome {
+    match outcome.and_then(|outcome| output::finish().map(|()| outcome)) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Interrupted) => ExitCode::from(130),
         Err(Failure { message, code }) => {
-            eprintln!("airlight: {message}");
+            output::eprintln!("airlight: {message}");
             ExitCode::from(code)
         }
     }
+}
+
+/// A file that cannot be written.
+fn unwritable(path: &std::path::Path, error: &std::io::Error) -> Failure {
+    Failure::error(format!("{}: cannot be written: {error}", path.display()))
 }
 
 /// A pool of that many threads, all processors if `None`.

@@ -1,6 +1,7 @@
 //! `airlight radiance`.
 
 use super::args::RadianceArgs;
+use super::output::println;
 use super::progress::{Line, duration};
 use super::{Failure, Outcome};
 use crate::cases::{self, Effort, Refusal, Report, Settings};
@@ -8,6 +9,8 @@ use std::collections::BTreeMap;
 
 pub(super) fn run(args: &RadianceArgs) -> Result<Outcome, Failure> {
     let suite = cases::read(&args.cases).map_err(Failure::error)?;
+    // Better now than after the work.
+    tables::file::check_writable(&args.output).map_err(|e| super::unwritable(&args.output, &e))?;
     let effort = args.spp.map_or(Effort::Error(args.error.unwrap_or(0.01)), Effort::Paths);
     let settings = Settings { tier: args.tier.into(), method: args.method.into(), effort, seed: args.seed };
     let line = Line::new(args.quiet);
@@ -18,8 +21,7 @@ pub(super) fn run(args: &RadianceArgs) -> Result<Outcome, Failure> {
     let report = pool.install(|| cases::run(&suite, &settings, &progress));
     line.clear();
     let path = &args.output;
-    tables::file::replace(path, cases::to_csv(&report.answers).as_bytes())
-        .map_err(|error| Failure::error(format!("{}: cannot be written: {error}", path.display())))?;
+    tables::file::replace(path, cases::to_csv(&report.answers).as_bytes()).map_err(|e| super::unwritable(path, &e))?;
     if !args.quiet {
         describe(&report);
         println!("time        {} on {} threads", duration(line.elapsed().as_secs_f64()), pool.current_num_threads());

@@ -1,6 +1,7 @@
 //! `airlight render`.
 
 use super::args::RenderArgs;
+use super::output::{eprintln, println};
 use super::progress::{Line, amount, duration, percent, size};
 use super::{Failure, Outcome};
 use crate::data::Data;
@@ -12,7 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
-    let base = args.scene.as_deref().map_or_else(|| Ok(Scene::default()), read_scene)?;
+    let base = args.scene.as_deref().map_or_else(|| Ok(Scene::default()), |path| read_scene(path, &args.tables))?;
     let scene = args.scene(base)?;
     let files = Files::new(&args.output)?;
     let data = Data::load(&args.data).map_err(Failure::error)?;
@@ -68,17 +69,55 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     Ok(Outcome::Done)
 }
 
-/// A scene from JSON, or from the EXR file of a picture.
-fn read_scene(path: &Path) -> Result<Scene, Failure> {
+/// A scene from JSON, or from the EXR file of a picture. Its own tables are found and, of a picture, must be what they
+/// were, unless `tables` come in their place.
+fn read_scene(path: &Path, tables: &[String]) -> Result<Scene, Failure> {
     let at = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let bytes = std::fs::read(path).map_err(|error| Failure::error(at(&format!("cannot be read: {error}"))))?;
-    let json = if has_extension(path, "exr") {
-        let found = exr::text_attribute(&bytes, receipt::SCENE).map_err(|error| Failure::usage(at(&error)))?;
-        found.ok_or_else(|| Failure::usage(at(&"a picture that carries no scene")))?
+    let attribute = |name: &str| exr::text_attribute(&bytes, name).map_err(|error| Failure::usage(at(&error)));
+    let (json, made_with) = if has_extension(path, "exr") {
+        let json = attribute(receipt::SCENE)?;
+        let json = json.ok_or_else(|| Failure::usage(at(&"a picture that carries no scene")))?;
+        (json, Some(attribute(receipt::TABLES)?.unwrap_or_default()))
     } else {
-        String::from_utf8(bytes).map_err(|error| Failure::usage(at(&error)))?
+        (std::str::from_utf8(&bytes).map_err(|error| Failure::usage(at(&error)))?, None)
     };
-    Scene::from_json(&json).map_err(|error| Failure::usage(at(&error)))
+    let mut scene = Scene::from_json(json).map_err(|error| Failure::usage(at(&error)))?;
+    if tables.is_empty() {
+        for table in &mut scene.tables {
+            *table = find_table(table, path, made_with)?;
+        }
+    }
+    Ok(scene)
+}
+
+/// Where the own table of a scene is: as it is written, from the current folder or from that of the scene, or by its
+/// name alone beside the scene. Of a picture (`made_with` are its tables) it must have the checksum that it had.
+fn find_table(table: &str, scene: &Path, made_with: Option<&str>) -> Result<String, Failure> {
+    let folder = scene.parent().unwrap_or(Path::new(""));
+    let name = Path::new(table).file_name().unwrap_or_default();
+    let places = [PathBuf::from(table), folder.join(table), folder.join(name)];
+    let at = |text: String| Failure::error(format!("{}: {text}", scene.display()));
+    let Some(found) = places.into_iter().find(|place| place.is_file()) else {
+        return Err(at(format!(
+            "its own table {table} is neither in the current folder nor beside it: name it with --table"
+        )));
+    };
+    if let Some(made_with) = made_with {
+        let bytes = std::fs::read(&found).map_err(|error| at(format!("{}: {error}", found.display())))?;
+        let (was, is) = (receipt::checksum_of(made_with, &name.to_string_lossy()), tables::file::checksum(&bytes));
+        if was != is {
+            let hex = |sum: Option<u32>| sum.map_or("none".into(), |sum| format!("{sum:08x}"));
+            return Err(at(format!(
+                "its own table {table} had the checksum {}, {} has {}: bring back the one it was made with, or name \
+                 this one with --table",
+                hex(was),
+                found.display(),
+                hex(is)
+            )));
+        }
+    }
+    found.into_os_string().into_string().map_err(|path| at(format!("{path:?} is not UTF-8")))
 }
 
 fn has_extension(path: &Path, wanted: &str) -> bool {
@@ -102,17 +141,16 @@ impl Files {
             return Err(Failure::usage(format!("{}: there is no such folder to write to", folder.display())));
         }
         // Better now than after the work.
-        let probe = exr.with_extension(format!("tmp-{}", std::process::id()));
-        std::fs::File::create(&probe)
-            .and_then(|_| std::fs::remove_file(&probe))
-            .map_err(|error| Failure::error(format!("{}: cannot be written: {error}", exr.display())))?;
-        Ok(Self { exr: exr.into(), png: exr.with_extension("png") })
+        let files = Self { exr: exr.into(), png: exr.with_extension("png") };
+        for path in [&files.exr, &files.png] {
+            tables::file::check_writable(path).map_err(|error| super::unwritable(path, &error))?;
+        }
+        Ok(files)
     }
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    tables::file::replace(path, bytes)
-        .map_err(|error| Failure::error(format!("{}: cannot be written: {error}", path.display())))
+    tables::file::replace(path, bytes).map_err(|error| super::unwritable(path, &error))
 }
 
 /// A flag that Ctrl-C sets; a second Ctrl-C ends the program at once.
@@ -135,20 +173,26 @@ fn stop_on_interrupt() -> Arc<AtomicBool> {
 fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering) {
     let (width, height) = scene.size();
     println!("sun         elevation {} degrees, azimuth {} degrees", scene.sun_elevation_deg, scene.sun_azimuth_deg);
+    let place = if sky.any_place() {
+        "own profile; month and latitude make no difference".into()
+    } else {
+        format!("month {}, latitude {}", scene.month, scene.latitude_deg)
+    };
     println!(
-        "air         molecules and ozone {:.1} DU (month {}, latitude {}), top {} km, ground albedo {}",
+        "air         molecules and ozone {:.1} DU ({place}), top {} km, ground albedo {}",
         sky.air().ozone_du(),
-        scene.month,
-        scene.latitude_deg,
         scene.top_km,
         scene.albedo
     );
-    if let (Some(biome), Some(haze)) = (scene.biome, sky.air().haze()) {
+    for table in sky.identities().iter().filter(|table| table.own) {
+        println!("own table   {} {:08x}, {}: {}", table.file, table.checksum, table.kind, table.title);
+    }
+    if let Some(haze) = sky.air().haze() {
         let humidities: Vec<String> =
             haze.humidities_percent().iter().map(|(name, rh)| format!("{} {rh} %", name.replace('_', " "))).collect();
         println!(
-            "aerosol     {biome} ({}), optical depth {:.3} at 550 nm, {:.3} times the type's own, visibility {:.1} km",
-            scene.aerosol_source,
+            "aerosol     {}, optical depth {:.3} at 550 nm, {:.3} times the type's own, visibility {:.1} km",
+            haze.origin(),
             haze.optical_depth(),
             haze.factor(),
             haze.visibility_km()

@@ -12,7 +12,6 @@
 //! gives the same bytes: no clock is asked, and attributes are in alphabetical order.
 
 use super::{EncodeError, Picture};
-use ::exr::meta::MetaData;
 use ::exr::meta::attribute::{AttributeValue, Chromaticities};
 use ::exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes, LineOrder,
@@ -95,18 +94,58 @@ pub fn encode(
     with_sorted_header(bytes.into_inner()).ok_or_else(|| EncodeError::Exr("its own header cannot be read".into()))
 }
 
-/// The text of the attribute `name` in the EXR file that `bytes` are; `None` if it has no such text.
+/// The text of the attribute `name` in the (first) header of the EXR file that `bytes` are; `None` if it has no such
+/// text. Only the header is read, and nothing is copied.
 ///
 /// # Errors
 /// [`EncodeError::Exr`] if they are no EXR file.
-pub fn text_attribute(bytes: &[u8], name: &str) -> Result<Option<String>, EncodeError> {
-    let meta = MetaData::read_from_buffered(std::io::Cursor::new(bytes), false)
-        .map_err(|error| EncodeError::Exr(error.to_string()))?;
-    let value = meta.headers.first().and_then(|header| header.own_attributes.other.get(&text(name)));
-    Ok(match value {
-        Some(AttributeValue::Text(value)) => String::from_utf8(value.as_slice().to_vec()).ok(),
-        _ => None,
-    })
+pub fn text_attribute<'a>(bytes: &'a [u8], name: &str) -> Result<Option<&'a str>, EncodeError> {
+    let header = bytes.starts_with(&MAGIC).then(|| header(bytes)).flatten();
+    let header =
+        header.ok_or_else(|| EncodeError::Exr("no EXR file, or one whose header is cut or too long".into()))?;
+    let found = header.into_iter().find(|entry| entry.name == name.as_bytes() && entry.kind == b"string");
+    Ok(found.and_then(|entry| std::str::from_utf8(entry.value).ok()))
+}
+
+/// The first four bytes of an EXR file.
+const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+/// Where the header begins: after magic and version.
+const START: usize = 8;
+
+/// The most attributes of a header: fifteen times what a picture of Airlight has.
+const MAX_ATTRIBUTES: usize = 512;
+
+/// An attribute as it stands in a file: name 0 type 0 length:i32 value.
+struct Entry<'a> {
+    whole: &'a [u8],
+    name: &'a [u8],
+    kind: &'a [u8],
+    value: &'a [u8],
+}
+
+/// The attributes of the first header up to the empty name that ends it; `None` if the file ends before, or
+/// after [`MAX_ATTRIBUTES`].
+fn header(bytes: &[u8]) -> Option<Vec<Entry<'_>>> {
+    let mut rest = bytes.get(START..)?;
+    let mut entries = Vec::new();
+    while *rest.first()? != 0 {
+        if entries.len() == MAX_ATTRIBUTES {
+            return None;
+        }
+        let (name, after) = text_until_zero(rest)?;
+        let (kind, after) = text_until_zero(after)?;
+        let (length, after) = after.split_first_chunk::<4>()?;
+        let (value, after) = after.split_at_checked(usize::try_from(i32::from_le_bytes(*length)).ok()?)?;
+        entries.push(Entry { whole: &rest[..rest.len() - after.len()], name, kind, value });
+        rest = after;
+    }
+    Some(entries)
+}
+
+fn text_until_zero(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let end = bytes.iter().position(|&b| b == 0)?;
+    Some((&bytes[..end], &bytes[end + 1..]))
 }
 
 /// Bytes of a string attribute; OpenEXR takes UTF-8.
@@ -116,23 +155,12 @@ fn text(value: &str) -> Text {
 
 /// The file with the attributes of its header in alphabetical order. The library writes
 /// them in the order of a hash map, another one each time; moving them leaves
-/// every offset of the file as it was. A header is magic and version (8 bytes), then
-/// attributes (name 0 type 0 length:i32 value) up to an empty name.
+/// every offset of the file as it was.
 fn with_sorted_header(mut bytes: Vec<u8>) -> Option<Vec<u8>> {
-    const START: usize = 8;
-    let mut at = START;
-    let mut attributes: Vec<Vec<u8>> = Vec::new();
-    while *bytes.get(at)? != 0 {
-        let start = at;
-        for _name_and_type in 0..2 {
-            at += bytes.get(at..)?.iter().position(|&b| b == 0)? + 1;
-        }
-        let length = i32::from_le_bytes(*bytes.get(at..)?.first_chunk::<4>()?);
-        at = at.checked_add(4)?.checked_add(usize::try_from(length).ok()?)?;
-        attributes.push(bytes.get(start..at)?.to_vec());
-    }
+    let mut attributes: Vec<&[u8]> = header(&bytes)?.into_iter().map(|entry| entry.whole).collect();
     attributes.sort();
-    bytes[START..at].copy_from_slice(&attributes.concat());
+    let sorted = attributes.concat();
+    bytes[START..START + sorted.len()].copy_from_slice(&sorted);
     Some(bytes)
 }
 
@@ -184,9 +212,13 @@ mod tests {
         assert_eq!(value("S0.550,250nm"), 6.0 + 1.05e7);
         assert_eq!(value("error.S0.550,250nm"), 0.0);
         assert!(value("G") > 1e4);
-        let attribute = |name| text_attribute(&encoded(), name).expect("an EXR file");
-        assert_eq!(attribute("airlight.scene").as_deref(), Some("{\"latitude\":\"45°\"}"));
+        let bytes = encoded();
+        let attribute = |name| text_attribute(&bytes, name).expect("an EXR file");
+        assert_eq!(attribute("airlight.scene"), Some("{\"latitude\":\"45°\"}"));
         assert_eq!(attribute("airlight.none"), None);
+        for length in 0..bytes.len().min(300) {
+            assert!(text_attribute(&bytes[..length], "airlight.scene").is_err(), "{length} bytes were taken");
+        }
         assert!(text_attribute(b"no such file", "airlight.scene").is_err());
         assert_eq!(layer.attributes.other[&text("emissiveUnits")], AttributeValue::Text(text("W.m^-2.sr^-1.nm^-1")));
     }

@@ -7,6 +7,16 @@ use crate::scene::Scene;
 /// The attribute that holds the scene.
 pub const SCENE: &str = "airlight.scene";
 
+/// The attribute that names the tables, one a line: file, checksum in hexadecimal, title.
+pub const TABLES: &str = "airlight.tables";
+
+/// Checksum of the table called `file` in the attribute [`TABLES`]. The file's name may hold blanks.
+#[must_use]
+pub fn checksum_of(tables: &str, file: &str) -> Option<u32> {
+    let rests = tables.lines().filter_map(|line| line.strip_prefix(file)?.strip_prefix(' '));
+    rests.filter_map(|rest| u32::from_str_radix(rest.get(..8)?, 16).ok()).next()
+}
+
 /// The attributes of a picture's EXR file, names beginning with `airlight.`: program and version, the scene as JSON
 /// (`airlight render` reads it), samples, errors, ozone, illuminances, exposure of the PNG, and
 /// each table with its checksum. No clock, machine or folder.
@@ -26,7 +36,7 @@ pub fn receipt(
     let haze = sky.air().haze();
     let mut attributes = vec![
         ("airlight.version", text(format!("airlight {}", env!("CARGO_PKG_VERSION")))),
-        (SCENE, text(scene.to_json())),
+        (SCENE, text(scene.to_portable_json())),
         ("airlight.seed", text(scene.seed.to_string())),
         ("airlight.samples_per_pixel_least", samples(film.least_samples())),
         ("airlight.samples_per_pixel_most", samples(film.most_samples())),
@@ -41,7 +51,7 @@ pub fn receipt(
         ("airlight.zenith_luminance_cd_m2", Attribute::Number(summary.zenith_cd_m2.mean)),
         ("airlight.zenith_luminance_cd_m2_error", Attribute::Number(summary.zenith_cd_m2.error)),
         ("airlight.exposure_ev", Attribute::Number(exposure_ev)),
-        ("airlight.tables", text(tables.join("\n"))),
+        (TABLES, text(tables.join("\n"))),
     ];
     if let Some(haze) = haze {
         attributes.push(("airlight.aerosol_optical_depth_550nm", Attribute::Number(haze.optical_depth())));

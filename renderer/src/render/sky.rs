@@ -1,17 +1,18 @@
 //! A scene turned into something that answers: what arrives from a direction?
 
 use super::RenderError;
-use crate::atmosphere::{Air, AirSettings, Haze, Medium};
+use crate::atmosphere::{Air, AirSettings, Haze, Medium, OzoneSource};
 use crate::data::{Data, Identity};
 use crate::geometry::{Place, Shape};
 use crate::light::{SunDisc, solar_angular_radius};
 use crate::sampling::Sampler;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneError};
 use crate::spectrum::{Colour, Packet, Wavelengths};
 use crate::transport::{self, Method, Problem};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::ops::Range;
+use tables::Kind;
 use tables::units::{EARTH_RADIUS_M, KM};
 
 /// Everything that is computed once for a picture. All spectra are per unit of the
@@ -23,6 +24,7 @@ pub struct Sky {
     colour: Colour,
     irradiance_w_m2_nm: Vec<f64>,
     air: Air,
+    any_place: bool,
     sun_direction: DVec3,
     identities: Vec<Identity>,
 }
@@ -33,6 +35,14 @@ impl Sky {
     /// # Errors
     /// [`RenderError`] if the scene names what the data do not have, or a table does not reach.
     pub fn new(scene: &Scene, data: &Data) -> Result<Self, RenderError> {
+        let with_own;
+        let data = if scene.tables.is_empty() {
+            data
+        } else {
+            with_own = data.with_tables(&scene.tables)?;
+            &with_own
+        };
+        check_own(scene, data)?;
         let wavelengths = &scene.wavelengths_nm;
         let albedo = scene.albedo_spectrum(data)?;
         let air = Air::new(
@@ -46,14 +56,16 @@ impl Sky {
             },
         )?;
         let mut identities = data.identities.clone();
-        let haze = match scene.biome {
-            None => None,
+        let aerosol = match scene.biome {
+            None => data.own_aerosol.clone(),
             Some(biome) => {
                 let (aerosol, identity) = data.aerosol(scene.aerosol_source, biome)?;
                 identities.push(identity);
-                Some(Haze::new(aerosol, scene.haze(), air.ground_extinction()?)?)
+                Some(aerosol)
             }
         };
+        let molecular = air.ground_extinction()?;
+        let haze = aerosol.map(|aerosol| Haze::new(aerosol, scene.haze(), molecular)).transpose()?;
         let air = air.with_haze(haze);
         let sun_direction = scene.sun_direction();
         let parts = Parts { wavelengths, albedo: &albedo, air: &air, data, method: scene.method, sun_direction };
@@ -72,6 +84,7 @@ impl Sky {
             place: Place::above(scene.altitude_km * KM),
             colour: Colour::new(&data.sun, &data.observer, wavelengths)?,
             irradiance_w_m2_nm: irradiance.collect::<Result<_, _>>()?,
+            any_place: data.ozone_profiles.is_single() && scene.ozone_source == OzoneSource::McPetersLabow,
             air,
             sun_direction,
             identities,
@@ -141,6 +154,12 @@ impl Sky {
         &self.air
     }
 
+    /// Whether month and latitude make no difference, since the ozone is one profile of somebody's own.
+    #[must_use]
+    pub fn any_place(&self) -> bool {
+        self.any_place
+    }
+
     /// The tables that were used.
     #[must_use]
     pub fn identities(&self) -> &[Identity] {
@@ -151,6 +170,30 @@ impl Sky {
     #[must_use]
     pub fn sun_direction(&self) -> DVec3 {
         self.sun_direction
+    }
+}
+
+/// Refuses choices that the own tables leave no room for.
+fn check_own(scene: &Scene, data: &Data) -> Result<(), SceneError> {
+    let refuse = |text: String| Err(SceneError::Refused(text));
+    let own = |kind: Kind| data.own().find(|identity| identity.kind == kind);
+    match (own(Kind::Aerosol), scene.biome, scene.aerosol_setting()) {
+        (Some(table), Some(biome), _) => {
+            return refuse(format!("{} is an aerosol, and so is the biome {biome}: leave one out", table.file));
+        }
+        (None, None, Some(setting)) => return Err(SceneError::no_aerosol(setting)),
+        _ => {}
+    }
+    let (kind, other, name) = match scene.ozone_source {
+        OzoneSource::McPetersLabow => (Kind::OzoneLayers, Kind::OzoneProfiles, "ml"),
+        OzoneSource::Arosa => (Kind::OzoneProfiles, Kind::OzoneLayers, "arosa"),
+    };
+    match own(kind) {
+        Some(table) => refuse(format!(
+            "{} is ozone of the kind {kind}, but the ozone source {name} takes {other}: leave one out",
+            table.file
+        )),
+        None => Ok(()),
     }
 }
 

@@ -6,8 +6,8 @@
 mod names;
 mod validate;
 
+pub use names::CameraKind;
 pub(crate) use names::word;
-pub use names::{CameraKind, nearest};
 pub use validate::SceneError;
 
 use crate::atmosphere::{Amount, HazePhase, HazeSettings, OzoneSource};
@@ -16,7 +16,9 @@ use crate::data::Data;
 use crate::spectrum::Wavelengths;
 use crate::transport::Method;
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
+use serde::de::Visitor;
+use serde::{Deserialize, Deserializer, Serialize};
+use std::path::{Component, Path};
 use std::str::FromStr;
 use tables::units::{EARTH_RADIUS_M, KM};
 use tables::views::{AerosolSource, Biome};
@@ -63,6 +65,9 @@ pub struct Scene {
     pub turbidity: Option<f64>,
     /// Where the aerosol scatters to.
     pub phase: HazePhase,
+    /// Own tables by their paths: each replaces, for this picture, the one of its kind; grounds are added.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tables: Vec<String>,
     /// Reflectance of the ground.
     pub albedo: Albedo,
     /// Wavelengths in nm. Default: 16 from 380 to 780 nm.
@@ -95,7 +100,7 @@ pub struct Scene {
 }
 
 /// What the ground reflects: Lambertian.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Albedo {
     /// The same at every wavelength, 0 to 1.
@@ -123,6 +128,7 @@ impl Default for Scene {
             visibility_km: None,
             turbidity: None,
             phase: HazePhase::Mie,
+            tables: Vec::new(),
             albedo: Albedo::Grey(0.1),
             wavelengths_nm: Wavelengths::default(),
             camera: CameraKind::Fisheye,
@@ -155,6 +161,25 @@ impl Scene {
     pub fn to_json(&self) -> String {
         // A struct of numbers and words has no value that JSON lacks once validated.
         serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// The scene as a picture carries it: as [`Scene::to_json`], but of a table whose path is absolute or leads out of
+    /// the current folder the name of the file alone, for no picture tells of its maker's folders.
+    #[must_use]
+    pub fn to_portable_json(&self) -> String {
+        let tables = self.tables.iter().map(|path| portable(path)).collect();
+        Self { tables, ..self.clone() }.to_json()
+    }
+
+    /// The first setting that says something of an aerosol, by its flag without dashes.
+    pub(crate) fn aerosol_setting(&self) -> Option<&'static str> {
+        let given = [
+            ("humidity", self.humidity_percent),
+            ("aod", self.aod),
+            ("visibility", self.visibility_km),
+            ("turbidity", self.turbidity),
+        ];
+        given.into_iter().find_map(|(name, value)| value.map(|_| name))
     }
 
     /// Whether the observer is at or above the top of the atmosphere.
@@ -244,11 +269,50 @@ impl Scene {
     }
 }
 
+/// A relative path that stays below its folder, with forward slashes; of any other the name of the file.
+fn portable(path: &str) -> String {
+    let parts: Vec<_> = Path::new(path).components().filter(|part| *part != Component::CurDir).collect();
+    let below = parts.iter().all(|part| matches!(part, Component::Normal(_)));
+    let kept = if below { &parts[..] } else { &parts[parts.len().saturating_sub(1)..] };
+    kept.iter().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
+}
+
 /// How far the horizon lies below the horizontal in radians, seen from `altitude_m`:
 /// sin dip = sqrt(h (2R + h)) / (R + h).
 fn horizon_dip(altitude_m: f64) -> f64 {
     let radius = EARTH_RADIUS_M + altitude_m;
     ((altitude_m * (EARTH_RADIUS_M + radius)).sqrt() / radius).asin()
+}
+
+/// A number is grey, a string the name of a ground. (Derived, it would keep whatever else stands there in memory.)
+impl<'de> Deserialize<'de> for Albedo {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct NumberOrName;
+        impl Visitor<'_> for NumberOrName {
+            type Value = Albedo;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a reflectance or the name of a ground")
+            }
+
+            fn visit_f64<E>(self, value: f64) -> Result<Albedo, E> {
+                Ok(Albedo::Grey(value))
+            }
+
+            fn visit_u64<E>(self, value: u64) -> Result<Albedo, E> {
+                Ok(Albedo::Grey(value as f64))
+            }
+
+            fn visit_i64<E>(self, value: i64) -> Result<Albedo, E> {
+                Ok(Albedo::Grey(value as f64))
+            }
+
+            fn visit_str<E>(self, name: &str) -> Result<Albedo, E> {
+                Ok(Albedo::Ground(name.into()))
+            }
+        }
+        from.deserialize_any(NumberOrName)
+    }
 }
 
 /// A number is grey, anything else the name of a ground.
@@ -286,6 +350,18 @@ mod tests {
         assert_eq!(scene, Scene { month: 3, albedo: Albedo::Grey(0.5), ..Scene::default() });
         let error = Scene::from_json(r#"{"sun_elevaton_deg": 3}"#).expect_err("unknown").to_string();
         assert!(error.contains("sun_elevaton_deg") && error.contains("line 1"), "{error}");
+    }
+
+    #[test]
+    fn a_picture_tells_nothing_of_the_folders_of_its_maker() {
+        let of = |path: &str| {
+            let scene = Scene { tables: vec![path.into()], ..Scene::default() };
+            Scene::from_json(&scene.to_portable_json()).expect("reads").tables
+        };
+        assert_eq!(of("/home/somebody/haze.table"), ["haze.table"]);
+        assert_eq!(of("../elsewhere/haze.table"), ["haze.table"]);
+        assert_eq!(of("./own/haze.table"), ["own/haze.table"]);
+        assert!(!Scene::default().to_json().contains("tables"), "an old scene reads as before");
     }
 
     #[test]

@@ -16,9 +16,9 @@ pub enum CameraKind {
 
 /// Words for aerosols in scene files: the names of the tables, and `none`.
 pub(crate) mod word {
-    use super::nearest;
     use serde::{Deserialize, Deserializer, Serializer};
     use tables::views::{AerosolSource, Biome};
+    use tables::{excerpt, nearest};
 
     /// What stands for no aerosol.
     pub(crate) const NONE: &str = "none";
@@ -39,10 +39,11 @@ pub(crate) mod word {
     }
 
     fn unknown(what: &str, name: &str, known: impl IntoIterator<Item = &'static str> + Clone) -> String {
+        let found = excerpt(name);
         match nearest(name, known.clone()) {
-            Some(near) => format!("{what} {name:?} is not known; did you mean {near}?"),
+            Some(near) => format!("{what} {found:?} is not known; did you mean {near}?"),
             None => {
-                format!("{what} {name:?} is not known; known are {}", Vec::from_iter(known).join(", "))
+                format!("{what} {found:?} is not known; known are {}", Vec::from_iter(known).join(", "))
             }
         }
     }
@@ -71,30 +72,5 @@ pub(crate) mod word {
         pub(in crate::scene) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<AerosolSource, D::Error> {
             source(&String::deserialize(from)?).map_err(serde::de::Error::custom)
         }
-    }
-}
-
-/// The known name nearest to `name` (Jaro-Winkler similarity of at least 0.7).
-#[must_use]
-pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let name = name.to_lowercase();
-    known
-        .into_iter()
-        .map(|candidate| (strsim::jaro_winkler(&name, candidate), candidate))
-        .filter(|(similarity, _)| *similarity >= 0.7)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_misspelt_name_finds_its_neighbour() {
-        let grounds = ["dry-soil", "ocean", "wet-soil"];
-        assert_eq!(nearest("Oceen", grounds), Some("ocean"));
-        assert_eq!(nearest("drysoil", grounds), Some("dry-soil"));
-        assert_eq!(nearest("xyz", grounds), None);
     }
 }

@@ -1,9 +1,9 @@
 //! What a scene may say.
 
-use super::{Albedo, CameraKind, Scene, nearest};
+use super::{Albedo, CameraKind, Scene};
 use crate::film::Film;
 use crate::spectrum::SpectrumError;
-use tables::TableError;
+use tables::{TableError, excerpt, nearest};
 
 /// The largest width and height in pixels.
 const MAX_SIZE: f64 = 16_384.0;
@@ -53,11 +53,16 @@ pub enum SceneError {
         source: TableError,
     },
     /// Text that is no scene.
-    #[error("not a scene: {0}")]
+    #[error("not a scene: {}", excerpt(&.0.to_string()))]
     Malformed(#[from] serde_json::Error),
 }
 
 impl SceneError {
+    /// A setting of an aerosol where there is none.
+    pub(crate) fn no_aerosol(setting: &str) -> Self {
+        Self::Refused(format!("{setting} says something of an aerosol: name its biome too"))
+    }
+
     /// [`SceneError::Unknown`] with the nearest of the `known` names, or all of them if none is near.
     pub(super) fn unknown<'a>(
         what: &'static str,
@@ -68,7 +73,7 @@ impl SceneError {
             Some(near) => format!("; did you mean {near}?"),
             None => format!("; known are {}", known.into_iter().collect::<Vec<_>>().join(", ")),
         };
-        Self::Unknown { what, name: name.into(), hint }
+        Self::Unknown { what, name: excerpt(name), hint }
     }
 }
 
@@ -100,14 +105,10 @@ impl Scene {
         optional("aod", self.aod, 0.0, 20.0, "")?;
         optional("visibility", self.visibility_km, 0.05, 400.0, " km")?;
         optional("turbidity", self.turbidity, 0.0, 1000.0, "")?;
-        let given = [("humidity", self.humidity_percent), ("aod", self.aod)];
-        let given = given.into_iter().chain([("visibility", self.visibility_km), ("turbidity", self.turbidity)]);
-        let given: Vec<&str> = given.filter_map(|(name, value)| value.map(|_| name)).collect();
-        let amounts = given.iter().filter(|name| **name != "humidity").count();
-        match given.first() {
-            Some(name) if self.biome.is_none() => {
-                Err(SceneError::Refused(format!("{name} says something of an aerosol: name its biome too")))
-            }
+        let amounts = [self.aod, self.visibility_km, self.turbidity].into_iter().flatten().count();
+        match self.aerosol_setting() {
+            // Whether one of the own tables is an aerosol shows when they are read.
+            Some(name) if self.biome.is_none() && self.tables.is_empty() => Err(SceneError::no_aerosol(name)),
             _ if amounts > 1 => Err(SceneError::Refused("aod, visibility and turbidity exclude each other".into())),
             _ => Ok(()),
         }

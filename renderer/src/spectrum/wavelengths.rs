@@ -1,8 +1,10 @@
 //! The list of simulated wavelengths.
 
-use serde::{Deserialize, Serialize};
+use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::ops::Range;
 use std::str::FromStr;
+use tables::excerpt;
 use tables::units::WAVELENGTH_RANGE_NM;
 
 /// The most wavelengths in one list.
@@ -16,8 +18,7 @@ const MIN_STEP_NM: f64 = 0.002;
 
 /// Increasing wavelengths in nm, 1 to [`MAX_WAVELENGTHS`] of them, within
 /// [`WAVELENGTH_RANGE_NM`], at least 0.002 nm apart.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Wavelengths(Vec<f64>);
 
 /// A list of wavelengths that cannot be used.
@@ -119,17 +120,35 @@ fn evenly(count: usize) -> Vec<f64> {
     }
 }
 
-impl TryFrom<Vec<f64>> for Wavelengths {
-    type Error = SpectrumError;
+/// From a list of numbers, of which no more are kept than may be.
+impl<'de> Deserialize<'de> for Wavelengths {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct List;
+        impl<'de> Visitor<'de> for List {
+            type Value = Wavelengths;
 
-    fn try_from(nm: Vec<f64>) -> Result<Self, SpectrumError> {
-        Self::new(nm)
-    }
-}
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a list of wavelengths in nm")
+            }
 
-impl From<Wavelengths> for Vec<f64> {
-    fn from(wavelengths: Wavelengths) -> Self {
-        wavelengths.0
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Wavelengths, A::Error> {
+                let mut nm = Vec::new();
+                while nm.len() < MAX_WAVELENGTHS
+                    && let Some(next) = list.next_element()?
+                {
+                    nm.push(next);
+                }
+                let mut count = nm.len();
+                while list.next_element::<IgnoredAny>()?.is_some() {
+                    count += 1;
+                }
+                if count > nm.len() {
+                    return Err(Error::custom(SpectrumError::Count(count)));
+                }
+                Wavelengths::new(nm).map_err(Error::custom)
+            }
+        }
+        from.deserialize_seq(List)
     }
 }
 
@@ -143,7 +162,7 @@ impl FromStr for Wavelengths {
             return Self::visible(count);
         }
         let list = text.trim().strip_suffix(',').unwrap_or(text);
-        let number = |part: &str| part.trim().parse().map_err(|_| SpectrumError::Unreadable(text.into()));
+        let number = |part: &str| part.trim().parse().map_err(|_| SpectrumError::Unreadable(excerpt(text)));
         Self::new(list.split(',').map(number).collect::<Result<_, _>>()?)
     }
 }

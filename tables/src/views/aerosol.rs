@@ -1,8 +1,9 @@
 //! Aerosol: what there is in each biome, how much of it where, and how it scatters and absorbs.
 
 use super::{WAVELENGTH, bounded, scalar};
-use crate::{Axis, Curve, Field, Interpolation, Kind, Outside, Table, TableError};
+use crate::{Axis, Curve, Field, Interpolation, Kind, Outside, Table, TableError, excerpt};
 use std::fmt;
+use std::sync::Arc;
 
 /// The axis of the cosine of the scattering angle, from -1 (backward) to 1 (forward).
 pub const COSINE: (&str, &str) = ("cosine", "1");
@@ -103,6 +104,57 @@ impl fmt::Display for AerosolSource {
     }
 }
 
+/// Where an aerosol comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Origin {
+    /// A biome after a source.
+    Biome(AerosolSource, Biome),
+    /// Somebody's own, by a name of theirs.
+    Own(String),
+}
+
+/// The setting `source` of an aerosol that is somebody's own.
+const OWN: &str = "own";
+
+impl Origin {
+    /// The settings of its table: `source` and `biome`, or `source` (`own`) and `name`.
+    #[must_use]
+    pub fn settings(&self) -> [(&'static str, String); 2] {
+        match self {
+            Self::Biome(source, biome) => [("source", source.to_string()), ("biome", biome.to_string())],
+            Self::Own(name) => [("source", OWN.into()), ("name", name.clone())],
+        }
+    }
+
+    /// The origin that a table's settings say.
+    fn from_table(table: &Table) -> Result<Self, TableError> {
+        let setting = |key: &'static str| {
+            let missing = || TableError::Missing { what: "setting", name: key.into(), kind: table.kind.to_string() };
+            table.settings.get(key).map(String::as_str).ok_or_else(missing)
+        };
+        let unknown =
+            |key: &str, name: &str| TableError::Inconsistent(format!("no {key} is called {:?}", excerpt(name)));
+        let source = setting("source")?;
+        if source == OWN {
+            return Ok(Self::Own(setting("name")?.into()));
+        }
+        let biome = setting("biome")?;
+        Ok(Self::Biome(
+            AerosolSource::from_name(source).ok_or_else(|| unknown("source", source))?,
+            Biome::from_name(biome).ok_or_else(|| unknown("biome", biome))?,
+        ))
+    }
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Biome(source, biome) => write!(f, "{biome} ({source})"),
+            Self::Own(name) => write!(f, "{name} ({OWN})"),
+        }
+    }
+}
+
 /// Optics of a species at one humidity and wavelength, per particle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Optics {
@@ -127,22 +179,20 @@ pub struct Species {
     pub number_density_m3: Curve,
     /// Relative humidity in percent at which it is by default.
     pub default_humidity_percent: f64,
-    wavelength: Axis,
+    wavelength: Arc<Axis>,
     humidity: Axis,
-    cosine: Axis,
+    cosine: Arc<Axis>,
     extinction: Field,
     scattering: Field,
     asymmetry: Field,
     phase: Field,
 }
 
-/// The aerosol of a biome after a source.
+/// The aerosol of a biome after a source, or somebody's own.
 #[derive(Debug, Clone)]
 pub struct Aerosol {
-    /// The biome.
-    pub biome: Biome,
-    /// The source.
-    pub source: AerosolSource,
+    /// Where it comes from.
+    pub origin: Origin,
     /// The species, lowest first.
     pub species: Vec<Species>,
 }
@@ -174,7 +224,7 @@ impl Aerosol {
         format!("{}-{source}-{biome}.table", Kind::Aerosol)
     }
 
-    /// Settings `biome` and `source`; axes `wavelength` (nm) and `cosine` (1, from -1 to 1); for each species S the
+    /// Settings `biome` and `source`, or `source` (`own`) and `name`; axes `wavelength` (nm) and `cosine` (1, from -1 to 1); for each species S the
     /// axes `S_altitude` (m), `S_humidity` (percent) and the fields `S_number_density` (m^-3) over altitude,
     /// `S_default_humidity` (percent) without axes, `S_extinction`, `S_scattering` (m^2) and `S_asymmetry` (1)
     /// over humidity and wavelength, `S_phase` (sr^-1) over humidity, wavelength and cosine. Further fields
@@ -186,22 +236,16 @@ impl Aerosol {
     /// negative or whose integral is off 1 by more than 1e-5.
     pub fn from_table(table: &Table) -> Result<Self, TableError> {
         table.expect_kind(Kind::Aerosol)?;
-        let setting = |key: &'static str| {
-            let missing = || TableError::Missing { what: "setting", name: key.into(), kind: table.kind.to_string() };
-            table.settings.get(key).map(String::as_str).ok_or_else(missing)
-        };
-        let unknown = |key: &str, name: &str| TableError::Inconsistent(format!("no {key} is called {name:?}"));
-        let (biome, source) = (setting("biome")?, setting("source")?);
+        let origin = Origin::from_table(table)?;
         let names = table.fields.iter().filter_map(|field| field.name.strip_suffix(suffix::NUMBER_DENSITY));
-        let species = names.map(|name| Species::from_table(table, name)).collect::<Result<Vec<_>, _>>()?;
+        let shared = |(name, unit)| refusing_axis(table, name, unit).map(|axis| Arc::new(axis.clone()));
+        let (wavelength, cosine) = (shared(WAVELENGTH)?, shared(COSINE)?);
+        let species = names.map(|name| Species::from_table(table, name, &wavelength, &cosine));
+        let species = species.collect::<Result<Vec<_>, _>>()?;
         if species.is_empty() {
             return Err(TableError::Inconsistent("no species".into()));
         }
-        Ok(Self {
-            biome: Biome::from_name(biome).ok_or_else(|| unknown("biome", biome))?,
-            source: AerosolSource::from_name(source).ok_or_else(|| unknown("source", source))?,
-            species,
-        })
+        Ok(Self { origin, species })
     }
 
     /// Vertical optical depth at a wavelength in nm. `humidity_percent` replaces the default humidity of those
@@ -237,8 +281,17 @@ impl Aerosol {
     }
 }
 
+/// An axis of the optics: in `unit`, linear, refusing outside.
+fn refusing_axis<'a>(table: &'a Table, name: &str, unit: &str) -> Result<&'a Axis, TableError> {
+    let axis = table.axis(name)?;
+    if axis.unit == unit && axis.outside == Outside::Error && axis.interpolation == Interpolation::Linear {
+        return Ok(axis);
+    }
+    Err(TableError::Inconsistent(format!("axis {name:?} must be in {unit:?}, linear, and refuse outside")))
+}
+
 impl Species {
-    fn from_table(table: &Table, name: &str) -> Result<Self, TableError> {
+    fn from_table(table: &Table, name: &str, wavelength: &Arc<Axis>, cosine: &Arc<Axis>) -> Result<Self, TableError> {
         let full = |end: &str| format!("{name}{end}");
         let (altitude, humidity) = (full(suffix::ALTITUDE), full(suffix::HUMIDITY));
         let spectral = |end: &str, unit: &str| -> Result<Field, TableError> {
@@ -248,20 +301,13 @@ impl Species {
         if density.axis().outside != Outside::Zero {
             return Err(TableError::Inconsistent(format!("axis {altitude:?} must be zero outside")));
         }
-        let axis = |name: &str, unit: &str| -> Result<Axis, TableError> {
-            let axis = table.axis(name)?;
-            if axis.unit == unit && axis.outside == Outside::Error && axis.interpolation == Interpolation::Linear {
-                return Ok(axis.clone());
-            }
-            Err(TableError::Inconsistent(format!("axis {name:?} must be in {unit:?}, linear, and refuse outside")))
-        };
         let species = Self {
             name: name.into(),
             number_density_m3: bounded(density, name, 0.0, 1e13)?,
             default_humidity_percent: scalar(table, &full(suffix::DEFAULT_HUMIDITY), "percent")?,
-            wavelength: axis(WAVELENGTH.0, WAVELENGTH.1)?,
-            humidity: axis(&humidity, "percent")?,
-            cosine: axis(COSINE.0, COSINE.1)?,
+            wavelength: Arc::clone(wavelength),
+            humidity: refusing_axis(table, &humidity, "percent")?.clone(),
+            cosine: Arc::clone(cosine),
             extinction: spectral(suffix::EXTINCTION, "m^2")?,
             scattering: spectral(suffix::SCATTERING, "m^2")?,
             asymmetry: spectral(suffix::ASYMMETRY, "1")?,

@@ -1,4 +1,5 @@
 use super::*;
+use crate::Scale;
 use crate::{Precision, Tolerance};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -58,7 +59,7 @@ fn sample() -> Table {
 #[test]
 fn optical_depth_is_the_closed_form_of_an_exponential_layer() {
     let aerosol = Aerosol::from_table(&sample()).expect("valid");
-    assert_eq!((aerosol.biome, aerosol.source), (Biome::Urban, AerosolSource::Opac));
+    assert_eq!(aerosol.origin, Origin::Biome(AerosolSource::Opac, Biome::Urban));
     let column = 1e9 * 2000.0 * (1.0 - (-2.0_f64).exp());
     // At 550 nm the logarithms are half-way: sqrt(16 x 4) e-14.
     let depth = aerosol.own_optical_depth().expect("550 nm is inside");
@@ -91,9 +92,20 @@ fn impossible_tables_are_refused() {
     assert!(refused(&|t| t.fields[3].values[0] = 5e-14), "more scattering than extinction");
     assert!(refused(&|t| t.fields[5].values[0] *= 1.1), "a phase function without integral 1");
     assert!(refused(&|t| drop(t.settings.insert("biome".into(), "moon".into()))), "an unknown biome");
+    assert!(refused(&|t| drop(t.settings.insert("source".into(), "own".into()))), "an own aerosol without a name");
     assert!(refused(&|t| drop(t.fields.remove(2))), "no extinction");
     assert!(refused(&|t| t.axes[2].outside = Outside::Hold), "aerosol up to any height");
     assert!(refused(&|t| t.fields[1].values[0] = 90.0), "a default humidity that is not there");
+}
+
+#[test]
+fn an_origin_finds_its_way_through_the_settings_of_a_table() {
+    for origin in [Origin::Biome(AerosolSource::Jaenicke, Biome::Rural), Origin::Own("volcano 7".into())] {
+        let mut table = sample();
+        table.settings = origin.settings().into_iter().map(|(key, value)| (key.into(), value)).collect();
+        assert_eq!(Aerosol::from_table(&table).expect("valid").origin, origin);
+    }
+    assert_eq!(Origin::Own("volcano 7".into()).to_string(), "volcano 7 (own)");
 }
 
 #[test]

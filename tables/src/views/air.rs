@@ -2,6 +2,7 @@
 
 use super::{ALTITUDE, WAVELENGTH, bounded};
 use crate::{Curve, Kind, Table, TableError};
+use std::collections::BTreeMap;
 
 /// Temperature, pressure and number density against geometric altitude.
 #[derive(Debug, Clone)]
@@ -21,10 +22,14 @@ impl StandardAtmosphere {
     /// [`TableError`] if the table is of another kind, lacks a field, or holds impossible values.
     pub fn from_table(table: &Table) -> Result<Self, TableError> {
         table.expect_kind(Kind::StandardAtmosphere)?;
+        let mut axes = BTreeMap::new();
+        let mut curve = |name: &str, unit: &str, low: f64, high: f64| {
+            bounded(table.curve_sharing(name, unit, ALTITUDE, &mut axes)?, name, low, high)
+        };
         Ok(Self {
-            temperature_k: bounded(table.curve("temperature", "K", ALTITUDE)?, "temperature", 50.0, 3000.0)?,
-            pressure_pa: bounded(table.curve("pressure", "Pa", ALTITUDE)?, "pressure", 0.0, 1e8)?,
-            number_density_m3: bounded(table.curve("number_density", "m^-3", ALTITUDE)?, "number_density", 0.0, 1e28)?,
+            temperature_k: curve("temperature", "K", 50.0, 3000.0)?,
+            pressure_pa: curve("pressure", "Pa", 0.0, 1e8)?,
+            number_density_m3: curve("number_density", "m^-3", 0.0, 1e28)?,
         })
     }
 }
@@ -48,10 +53,14 @@ impl Rayleigh {
     /// [`TableError`] if the table is of another kind, lacks a field, or holds impossible values.
     pub fn from_table(table: &Table) -> Result<Self, TableError> {
         table.expect_kind(Kind::Rayleigh)?;
+        let mut axes = BTreeMap::new();
+        let mut curve = |name: &str, unit: &str, low: f64, high: f64| {
+            bounded(table.curve_sharing(name, unit, WAVELENGTH, &mut axes)?, name, low, high)
+        };
         Ok(Self {
-            cross_section_m2: bounded(table.curve("cross_section", "m^2", WAVELENGTH)?, "cross_section", 0.0, 1e-20)?,
-            king_factor: bounded(table.curve("king_factor", "1", WAVELENGTH)?, "king_factor", 1.0, 2.0)?,
-            gamma: bounded(table.curve("gamma", "1", WAVELENGTH)?, "gamma", 0.0, 0.5)?,
+            cross_section_m2: curve("cross_section", "m^2", 0.0, 1e-20)?,
+            king_factor: curve("king_factor", "1", 1.0, 2.0)?,
+            gamma: curve("gamma", "1", 0.0, 0.5)?,
         })
     }
 }

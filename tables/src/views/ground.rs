@@ -19,12 +19,12 @@ impl GroundAlbedo {
     /// [`TableError`] if the table is of another kind or a value is outside 0..=1.
     pub fn from_table(table: &Table) -> Result<Self, TableError> {
         table.expect_kind(Kind::GroundAlbedo)?;
-        let mut spectra = BTreeMap::new();
+        let (mut spectra, mut axes) = (BTreeMap::new(), BTreeMap::new());
         for field in &table.fields {
             let [axis] = field.axes.as_slice() else {
                 return Err(TableError::Inconsistent(format!("field {:?} must be over one axis", field.name)));
             };
-            let curve = table.curve(&field.name, "1", (axis, "nm"))?;
+            let curve = table.curve_sharing(&field.name, "1", (axis, "nm"), &mut axes)?;
             spectra.insert(field.name.clone(), bounded(curve, &field.name, 0.0, 1.0)?);
         }
         Ok(Self { spectra })

@@ -2,6 +2,7 @@
 
 use super::{WAVELENGTH, bounded};
 use crate::{Axis, Curve, Field, Kind, Table, TableError};
+use std::collections::BTreeMap;
 
 /// The sun at 1 au.
 #[derive(Debug, Clone)]
@@ -58,7 +59,8 @@ impl Observer {
     /// [`TableError`] if the table is of another kind, lacks a field, or holds impossible values.
     pub fn from_table(table: &Table) -> Result<Self, TableError> {
         table.expect_kind(Kind::Observer)?;
-        let curve = |name: &str| bounded(table.curve(name, "1", WAVELENGTH)?, name, 0.0, 3.0);
+        let mut axes = BTreeMap::new();
+        let mut curve = |name: &str| bounded(table.curve_sharing(name, "1", WAVELENGTH, &mut axes)?, name, 0.0, 3.0);
         Ok(Self { matching: [curve("x_bar")?, curve("y_bar")?, curve("z_bar")?] })
     }
 }

@@ -1,7 +1,8 @@
 //! Ozone: how much of it there is where, and how it absorbs.
 
 use super::{ALTITUDE, LATITUDE, MONTH, WAVELENGTH, scalar};
-use crate::{Axis, Curve, Field, Kind, Scale, Table, TableError};
+use crate::{Axis, Curve, Field, Kind, Outside, Scale, Table, TableError};
+use std::collections::BTreeMap;
 
 /// Absorption cross-section of ozone, sigma(lambda, T) = s_0 + s_1 (T - T_0) + s_2 (T - T_0)^2.
 ///
@@ -23,13 +24,11 @@ impl OzoneCrossSection {
     /// [`TableError`] if the table is of another kind or lacks a field.
     pub fn from_table(table: &Table) -> Result<Self, TableError> {
         table.expect_kind(Kind::OzoneCrossSection)?;
+        let mut axes = BTreeMap::new();
+        let mut curve = |name: &str, unit: &str| table.curve_sharing(name, unit, WAVELENGTH, &mut axes);
         Ok(Self {
             reference_temperature_k: scalar(table, "reference_temperature", "K")?,
-            coefficients: [
-                table.curve("sigma_0", "m^2", WAVELENGTH)?,
-                table.curve("sigma_1", "m^2 K^-1", WAVELENGTH)?,
-                table.curve("sigma_2", "m^2 K^-2", WAVELENGTH)?,
-            ],
+            coefficients: [curve("sigma_0", "m^2")?, curve("sigma_1", "m^2 K^-1")?, curve("sigma_2", "m^2 K^-2")?],
         })
     }
 
@@ -81,6 +80,13 @@ impl OzoneProfiles {
             number_density,
             column: table.field("column", "DU", &[MONTH.0, LATITUDE.0])?.clone(),
         })
+    }
+
+    /// Whether there is one profile only, which holds in every month at every latitude: a sonde's.
+    #[must_use]
+    pub fn is_single(&self) -> bool {
+        let one = |axis: &Axis| axis.nodes.len() == 1 && axis.outside == Outside::Hold;
+        one(&self.month) && one(&self.latitude)
     }
 
     /// The profile of a month (1 to 12) at a latitude in degrees, linear

@@ -1,7 +1,7 @@
 //! Averages of single spheres over a size distribution.
 
 use super::AerosolError;
-use super::size::LogNormal;
+use super::size::Sizes;
 use crate::mie::{AngularTable, RefractiveIndex, SIZE_PARAMETERS, Spheres, Sums};
 use std::f64::consts::PI;
 
@@ -60,7 +60,7 @@ pub struct QuadratureError {
 /// [`AerosolError::Mie`] if a sphere cannot be solved.
 pub fn average(
     m: RefractiveIndex,
-    sizes: &LogNormal,
+    sizes: &Sizes,
     wavelength: f64,
     angles: &AngularTable,
     rule: &Rule,

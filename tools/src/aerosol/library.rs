@@ -2,10 +2,9 @@
 
 use super::AerosolError;
 use super::bulk::{Bulk, Rule, average};
-use super::material::index;
+use super::material::{Substances, index};
 use super::recipe::Particles;
 use crate::mie::{AngularTable, Spheres, terms};
-use crate::raw::aerosol_opac::AerosolOpac;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -23,13 +22,14 @@ impl Library {
     ///
     /// # Errors
     /// [`AerosolError`], of the first that fails.
-    pub fn new(
-        opac: &AerosolOpac,
+    pub fn new<'a>(
+        substances: impl Into<Substances<'a>>,
         particles: impl IntoIterator<Item = Particles>,
         wavelengths_nm: &[f64],
         cosines: &[f64],
         rule: &Rule,
     ) -> Result<Self, AerosolError> {
+        let substances = substances.into();
         let mut distinct: Vec<Particles> = Vec::new();
         for one in particles {
             if !distinct.contains(&one) {
@@ -45,7 +45,7 @@ impl Library {
             .par_iter()
             .map_init(Spheres::new, |solver, &(p, w)| {
                 let (particles, wavelength_nm) = (&distinct[p], wavelengths_nm[w]);
-                let m = index(opac, &particles.material, particles.humidity_percent, wavelength_nm)?;
+                let m = index(substances, &particles.material, particles.humidity_percent, wavelength_nm)?;
                 average(m, &particles.sizes, wavelength_nm * 1e-9, &angles, rule, solver)
             })
             .collect();

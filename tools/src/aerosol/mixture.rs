@@ -4,8 +4,8 @@ use super::AerosolError;
 use super::angles::normalise;
 use super::bulk::{Bulk, QuadratureError};
 use super::library::Library;
+use super::material::Substances;
 use super::recipe::SpeciesRecipe;
-use crate::raw::aerosol_opac::AerosolOpac;
 
 /// Optics of a mixture at one wavelength, per particle of the whole.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,15 +72,16 @@ pub fn mix(parts: &[(&Bulk, f64)], cosines: &[f64]) -> Mixed {
 ///
 /// # Errors
 /// [`AerosolError::Missing`] if the library lacks one of its particles.
-pub fn species(
-    opac: &AerosolOpac,
+pub fn species<'a>(
+    substances: impl Into<Substances<'a>>,
     library: &Library,
     recipe: &SpeciesRecipe,
     humidity_percent: f64,
 ) -> Result<Vec<Mixed>, AerosolError> {
+    let substances = substances.into();
     let mut parts = Vec::with_capacity(recipe.parts.len());
     for (part, number) in &recipe.parts {
-        parts.push((library.get(&part.particles(opac, humidity_percent)?)?, *number));
+        parts.push((library.get(&part.particles(substances, humidity_percent)?)?, *number));
     }
     let at = |w: usize| -> Vec<(&Bulk, f64)> { parts.iter().map(|(bulk, number)| (&bulk[w], *number)).collect() };
     Ok((0..library.wavelengths_nm().len()).map(|w| mix(&at(w), library.cosines())).collect())

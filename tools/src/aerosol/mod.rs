@@ -1,7 +1,7 @@
 //! Aerosols: from size distributions and refractive indices to cross-sections and phase functions of
 //! mixtures, and the biomes made of them.
 //!
-//! [`size`] has the log-normal distribution; [`bulk`] averages single spheres of [`crate::mie`] over it;
+//! [`size`] has the distributions of radii, log-normal or tabulated; [`bulk`] averages single spheres of [`crate::mie`] over it;
 //! [`material`] interpolates refractive indices; [`angles`] has the angles of the tables and the rule of
 //! normalisation; [`recipe`] says what each biome is made of, after each source; [`library`] computes all
 //! particles of some recipes in parallel; [`mixture`] mixes them; [`thesis`] reproduces the numbers

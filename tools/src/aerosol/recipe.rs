@@ -1,11 +1,12 @@
 //! What each biome is made of: particles, amounts, profiles. `docs/aerosols.md` gives the reasons.
 
 use super::AerosolError;
-use super::size::LogNormal;
+use super::material::Substances;
+use super::size::{LogNormal, Sizes};
 use crate::raw::aerosol_jaenicke::AerosolJaenicke;
 use crate::raw::aerosol_opac::AerosolOpac;
 use tables::units::KM;
-use tables::views::{AerosolSource, Biome};
+use tables::views::{AerosolSource, Biome, Origin};
 use tables::{Axis, Curve, Outside, Scale, TableError};
 
 /// Relative humidities of the OPAC data, percent.
@@ -26,7 +27,7 @@ pub struct Particles {
     /// Relative humidity of its refractive index, percent.
     pub humidity_percent: f64,
     /// Their sizes.
-    pub sizes: LogNormal,
+    pub sizes: Sizes,
 }
 
 /// A share of a species.
@@ -34,12 +35,12 @@ pub struct Particles {
 pub enum Part {
     /// A component of OPAC by name, which takes up water if its data say so.
     Component(String),
-    /// A log-normal mode of a dry material.
+    /// Particles as they are, dry.
     Mode(Particles),
 }
 
 /// Number density against altitude, relative to that at sea level.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Profile {
     /// exp(-z / scale_height) from `bottom` to `top` (m), nothing outside; the density at sea level is the
     /// factor also where the layer begins higher. A scale height of 99 km stands for a constant.
@@ -60,6 +61,14 @@ pub enum Profile {
         /// Upper end, m.
         top: f64,
     },
+    /// Values at some altitudes; their logarithms are linear between them, or they themselves if one is zero.
+    /// Nothing outside.
+    Levels {
+        /// Altitudes, m.
+        altitudes: Vec<f64>,
+        /// Number density relative to that at sea level, 1.
+        relative: Vec<f64>,
+    },
 }
 
 /// One species of a biome.
@@ -77,13 +86,11 @@ pub struct SpeciesRecipe {
     pub default_humidity: f64,
 }
 
-/// The aerosol of a biome.
+/// The aerosol of a biome, or somebody's own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recipe {
-    /// The biome.
-    pub biome: Biome,
-    /// The source.
-    pub source: AerosolSource,
+    /// Where it comes from.
+    pub origin: Origin,
     /// In words, for the table's settings.
     pub composition: String,
     /// Its species, lowest first.
@@ -108,21 +115,24 @@ impl Part {
     ///
     /// # Errors
     /// [`AerosolError`] if the data lack the component.
-    pub fn particles(&self, opac: &AerosolOpac, humidity_percent: f64) -> Result<Particles, AerosolError> {
+    pub fn particles<'a>(
+        &self,
+        substances: impl Into<Substances<'a>>,
+        humidity_percent: f64,
+    ) -> Result<Particles, AerosolError> {
         let name = match self {
             Self::Mode(particles) => return Ok(particles.clone()),
             Self::Component(name) => name,
         };
-        let at = |humidity: f64| {
-            opac.components.rows.iter().find(|c| c.component == *name && c.humidity_percent == humidity)
-        };
-        let grows = opac.components.rows.iter().any(|c| c.component == *name && c.humidity_percent > 0.0);
+        let components = substances.into().components;
+        let at = |humidity: f64| components.iter().find(|c| c.component == *name && c.humidity_percent == humidity);
+        let grows = components.iter().any(|c| c.component == *name && c.humidity_percent > 0.0);
         let row = at(if grows { humidity_percent } else { 0.0 })
             .ok_or_else(|| missing(format!("component {name} at {humidity_percent} % humidity")))?;
         Ok(Particles {
             material: row.material.clone(),
             humidity_percent: row.humidity_percent,
-            sizes: LogNormal::new(row.median_radius, row.sigma_g, row.smallest_radius, row.largest_radius)?,
+            sizes: LogNormal::new(row.median_radius, row.sigma_g, row.smallest_radius, row.largest_radius)?.into(),
         })
     }
 }
@@ -138,6 +148,11 @@ impl Profile {
     /// [`TableError`] if the numbers make no curve.
     pub fn curve(&self, axis: &str, at_sea_level: f64) -> Result<Curve, TableError> {
         let (nodes, density): (Vec<f64>, Box<dyn Fn(f64) -> f64>) = match *self {
+            Self::Levels { ref altitudes, ref relative } => {
+                let values: Vec<f64> = relative.iter().map(|value| at_sea_level * value).collect();
+                let scale = if values.contains(&0.0) { Scale::Linear } else { Scale::Logarithmic };
+                return Curve::new(Axis::new(axis, "m", altitudes.clone())?.beyond(Outside::Zero), scale, values);
+            }
             Self::Layer { bottom, top, scale_height } if scale_height >= 99.0 * KM => {
                 (vec![bottom, top], Box::new(move |_| 1.0))
             }
@@ -229,7 +244,7 @@ fn opac(opac: &AerosolOpac, biome: Biome) -> Result<Recipe, AerosolError> {
         }
         _ => opac_species(opac, name)?,
     };
-    Ok(Recipe { biome, source: AerosolSource::Opac, composition, species })
+    Ok(Recipe { origin: Origin::Biome(AerosolSource::Opac, biome), composition, species })
 }
 
 /// The stratosphere of OPAC above the background.
@@ -306,7 +321,7 @@ fn jaenicke(inputs: Inputs, biome: Biome) -> Result<Recipe, AerosolError> {
         for (material, share) in materials {
             let sigma_g = 10.0_f64.powf(mode.log10_sigma);
             let sizes = LogNormal::new(mode.median_radius, sigma_g, JAENICKE_SMALLEST, JAENICKE_LARGEST)?;
-            let particles = Particles { material: (*material).to_owned(), humidity_percent: 0.0, sizes };
+            let particles = Particles { material: (*material).to_owned(), humidity_percent: 0.0, sizes: sizes.into() };
             parts.push((Part::Mode(particles), mode.number_density * share));
         }
     }
@@ -325,5 +340,5 @@ fn jaenicke(inputs: Inputs, biome: Biome) -> Result<Recipe, AerosolError> {
     }
     let shares: Vec<String> = materials.iter().map(|(material, share)| format!("{share} {material}")).collect();
     let composition = format!("Jaenicke's {jaenicke_type}, dry, in the number {}", shares.join(" + "));
-    Ok(Recipe { biome, source: AerosolSource::Jaenicke, composition, species })
+    Ok(Recipe { origin: Origin::Biome(AerosolSource::Jaenicke, biome), composition, species })
 }

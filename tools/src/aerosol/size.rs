@@ -1,7 +1,8 @@
-//! Sizes of particles.
+//! Sizes of particles: log-normal, or tabulated.
 
 use super::AerosolError;
 use std::f64::consts::PI;
+use tables::Scale;
 
 /// Standard deviations of ln r, beyond the radii that matter, at which an average is cut off: the Gaussian
 /// is 7e-10 there.
@@ -59,9 +60,137 @@ impl LogNormal {
     }
 }
 
+/// A distribution of the radius as measured: n(ln r) at some radii. Between two of them its logarithm is linear in
+/// ln r (a power law of the radius), or it itself where one end is zero; nothing smaller or larger.
+///
+/// It is normalised to 1 over the radii given.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tabulated {
+    ln_r: Vec<f64>,
+    density: Vec<f64>,
+    number: f64,
+}
+
+impl Tabulated {
+    /// The distribution with the particles per unit of ln r `density` (any unit) at the radii `radii` in m.
+    ///
+    /// # Errors
+    /// [`AerosolError::Size`] unless there are two radii or more, positive and growing, as many densities, none
+    /// negative and not all zero; all finite.
+    pub fn new(radii: &[f64], density: &[f64]) -> Result<Self, AerosolError> {
+        let finite = radii.iter().chain(density).all(|x| x.is_finite());
+        let growing = radii.first().is_some_and(|r| *r > 0.0) && radii.windows(2).all(|pair| pair[0] < pair[1]);
+        if !finite || !growing || radii.len() != density.len() || density.iter().any(|n| *n < 0.0) {
+            return Err(AerosolError::Size("radii must grow and numbers not be negative".into()));
+        }
+        let ln_r: Vec<f64> = radii.iter().map(|r| r.ln()).collect();
+        let pieces = ln_r.windows(2).zip(density.windows(2));
+        let number: f64 = pieces.map(|(x, n)| (x[1] - x[0]) * mean_between(n[0], n[1])).sum();
+        if number > 0.0 {
+            let density = density.iter().map(|n| n / number).collect();
+            return Ok(Self { ln_r, density, number });
+        }
+        Err(AerosolError::Size("it holds no particles".into()))
+    }
+
+    /// The number of particles before it was normalised, in the unit of the densities: the integral of n(ln r).
+    #[must_use]
+    pub fn number(&self) -> f64 {
+        self.number
+    }
+
+    fn density(&self, ln_r: f64) -> f64 {
+        let above = self.ln_r.partition_point(|&x| x <= ln_r);
+        let last = self.ln_r.len() - 1;
+        let Some(below) = above.checked_sub(1) else { return 0.0 };
+        if below == last {
+            // Only the last radius itself is inside.
+            return if ln_r > self.ln_r[last] { 0.0 } else { self.density[last] };
+        }
+        let (a, b) = (self.density[below], self.density[above]);
+        let f = (ln_r - self.ln_r[below]) / (self.ln_r[above] - self.ln_r[below]);
+        if a > 0.0 && b > 0.0 { Scale::Logarithmic.between(a, b, f) } else { Scale::Linear.between(a, b, f) }
+    }
+}
+
+/// Mean over a piece of what runs from `a` to `b`, its logarithm linear, or it itself where one end is zero.
+fn mean_between(a: f64, b: f64) -> f64 {
+    if a > 0.0 && b > 0.0 && a != b { (b - a) / (b / a).ln() } else { 0.5 * (a + b) }
+}
+
+/// A distribution of the radius, normalised to one particle.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Sizes {
+    /// A log-normal.
+    LogNormal(LogNormal),
+    /// As measured.
+    Tabulated(Tabulated),
+}
+
+impl Sizes {
+    /// n(ln r): particles per unit of ln r, of one particle of the whole distribution.
+    #[must_use]
+    pub fn density(&self, ln_r: f64) -> f64 {
+        match self {
+            Self::LogNormal(sizes) => sizes.density(ln_r),
+            Self::Tabulated(sizes) => sizes.density(ln_r),
+        }
+    }
+
+    /// ln r between which averages are taken; see [`LogNormal::limits`]. Of a table its first and last radius.
+    #[must_use]
+    pub fn limits(&self) -> (f64, f64) {
+        match self {
+            Self::LogNormal(sizes) => sizes.limits(),
+            Self::Tabulated(sizes) => (sizes.ln_r[0], sizes.ln_r[sizes.ln_r.len() - 1]),
+        }
+    }
+}
+
+impl From<LogNormal> for Sizes {
+    fn from(sizes: LogNormal) -> Self {
+        Self::LogNormal(sizes)
+    }
+}
+
+impl From<Tabulated> for Sizes {
+    fn from(sizes: Tabulated) -> Self {
+        Self::Tabulated(sizes)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_tabulated_power_law_is_exact() {
+        // n(ln r) = r^-3 from 0.1 to 10 (any unit): the integral is (0.1^-3 - 10^-3) / 3.
+        let radii: Vec<f64> = (0..=8).map(|i| 0.1 * 10.0_f64.powf(f64::from(i) / 4.0)).collect();
+        let density: Vec<f64> = radii.iter().map(|r| r.powi(-3)).collect();
+        let sizes = Tabulated::new(&radii, &density).expect("sound");
+        let exact = (1e3 - 1e-3) / 3.0;
+        // A few roundings of exp and ln.
+        assert!((sizes.number() / exact - 1.0).abs() < 1e-13, "{} for {exact}", sizes.number());
+        let at = sizes.density(0.7_f64.ln());
+        assert!((at * exact / 0.7_f64.powi(-3) - 1.0).abs() < 1e-12, "{at}");
+        let sizes = Sizes::from(sizes);
+        let (low, high) = sizes.limits();
+        assert!(sizes.density(low) > 0.0 && sizes.density(high) > 0.0, "the ends belong to it");
+        assert_eq!((sizes.density(low - 1e-9), sizes.density(high + 1e-9)), (0.0, 0.0));
+    }
+
+    #[test]
+    fn a_table_may_hold_empty_bins_but_not_only_those() {
+        let sizes = Tabulated::new(&[1e-7, 1e-6, 1e-5], &[0.0, 2.0, 0.0]).expect("sound");
+        // A triangle over two decades of ln r.
+        assert!((sizes.number() / (2.0 * 10.0_f64.ln()) - 1.0).abs() < 1e-14);
+        for (radii, density) in
+            [(vec![1e-7, 1e-6], vec![0.0, 0.0]), (vec![1e-6, 1e-7], vec![1.0, 1.0]), (vec![1e-6], vec![1.0])]
+        {
+            assert!(Tabulated::new(&radii, &density).is_err(), "{radii:?} {density:?}");
+        }
+    }
 
     #[test]
     fn moments_are_their_closed_forms() {

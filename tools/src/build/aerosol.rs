@@ -1,16 +1,17 @@
-//! Tables of aerosol: one for each source and biome.
+//! Tables of aerosol: one for each source and biome, and those of one's own.
 
 use super::{field, two_digits};
 use crate::aerosol::AerosolError;
 use crate::aerosol::angles::{cosines, degrees};
 use crate::aerosol::bulk::Rule;
 use crate::aerosol::library::Library;
+use crate::aerosol::material::Substances;
 use crate::aerosol::mixture::{Mixed, species};
 use crate::aerosol::recipe::{Inputs, Particles, Recipe, SpeciesRecipe, recipe};
 use crate::raw::RawData;
 use tables::units::WAVELENGTH_RANGE_NM;
-use tables::views::{AerosolSource, Biome, COSINE, WAVELENGTH, suffix};
-use tables::{Axis, Field, Kind, Precision, Scale, Table, TableError, Tolerance};
+use tables::views::{AerosolSource, Biome, COSINE, Origin, WAVELENGTH, suffix};
+use tables::{Axis, Field, Kind, Precision, Provenance, Scale, Table, TableError, Tolerance};
 
 /// Step of the wavelength axis, nm: every other node is one of the refractive indices, which are linear between theirs.
 const WAVELENGTH_STEP: f64 = 25.0;
@@ -21,9 +22,8 @@ const RULE: Rule = Rule { first: 50, most: 1600, cross_sections: 3e-4, misplaced
 /// Of the intervals between wavelengths, the interpolation is measured in every how many.
 const MEASURED: usize = 4;
 
-/// What all aerosol tables are made from.
-pub(super) struct Prepared {
-    recipes: Vec<Recipe>,
+/// The optics of every kind of particles of some recipes.
+pub(crate) struct Prepared {
     axis: Axis,
     /// At the nodes of the axis, at all humidities.
     nodes: Library,
@@ -35,13 +35,29 @@ fn refused(error: AerosolError) -> TableError {
     TableError::Inconsistent(error.to_string())
 }
 
-fn inputs(raw: &RawData) -> Inputs<'_> {
-    Inputs { opac: &raw.aerosol_opac, jaenicke: &raw.aerosol_jaenicke }
+/// The recipes of these biomes.
+pub(super) fn recipes(raw: &RawData, aerosols: &[(AerosolSource, Biome)]) -> Result<Vec<Recipe>, TableError> {
+    let inputs = Inputs { opac: &raw.aerosol_opac, jaenicke: &raw.aerosol_jaenicke };
+    aerosols.iter().map(|&(source, biome)| recipe(inputs, source, biome).map_err(refused)).collect()
+}
+
+/// What a recipe was made from.
+pub(super) fn provenance(raw: &RawData, source: AerosolSource) -> Vec<Provenance> {
+    let mut provenance = vec![
+        raw.aerosol_opac.refractive_index.provenance.clone(),
+        raw.aerosol_opac.components.provenance.clone(),
+        raw.aerosol_opac.types.provenance.clone(),
+        raw.aerosol_opac.layers.provenance.clone(),
+    ];
+    if source == AerosolSource::Jaenicke {
+        provenance.push(raw.aerosol_jaenicke.modes.provenance.clone());
+    }
+    provenance
 }
 
 /// Every kind of particles that these recipes need at the humidities that `of` chooses.
 fn particles<'a>(
-    raw: &RawData,
+    substances: Substances<'_>,
     recipes: &'a [Recipe],
     of: impl Fn(&'a SpeciesRecipe) -> &'a [f64],
 ) -> Result<Vec<Particles>, AerosolError> {
@@ -49,31 +65,29 @@ fn particles<'a>(
     for species in recipes.iter().flat_map(|recipe| &recipe.species) {
         for &humidity in of(species) {
             for (part, _) in &species.parts {
-                all.push(part.particles(&raw.aerosol_opac, humidity)?);
+                all.push(part.particles(substances, humidity)?);
             }
         }
     }
     Ok(all)
 }
 
-/// Computes the optics of every kind of particles of these biomes.
-pub(super) fn prepare(raw: &RawData, aerosols: &[(AerosolSource, Biome)]) -> Result<Prepared, TableError> {
+/// Computes the optics of every kind of particles of these recipes.
+pub(crate) fn prepare(substances: Substances<'_>, recipes: &[Recipe]) -> Result<Prepared, TableError> {
     let (low, high) = WAVELENGTH_RANGE_NM;
     let count = ((high - low) / WAVELENGTH_STEP) as usize + 1;
     let axis = Axis::uniform(WAVELENGTH.0, WAVELENGTH.1, low, WAVELENGTH_STEP, count)?;
     let between: Vec<f64> = axis.nodes.windows(2).step_by(MEASURED).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
     let angles = cosines(&degrees());
-    let compute = || -> Result<(Vec<Recipe>, Library, Library), AerosolError> {
-        let made = aerosols.iter().map(|&(source, biome)| recipe(inputs(raw), source, biome));
-        let recipes = made.collect::<Result<Vec<_>, _>>()?;
-        let all = particles(raw, &recipes, |s| &s.humidities)?;
-        let nodes = Library::new(&raw.aerosol_opac, all, &axis.nodes, &angles, &RULE)?;
-        let usual = particles(raw, &recipes, |s| std::slice::from_ref(&s.default_humidity))?;
-        let halves = Library::new(&raw.aerosol_opac, usual, &between, &angles, &RULE)?;
-        Ok((recipes, nodes, halves))
+    let compute = || -> Result<(Library, Library), AerosolError> {
+        let all = particles(substances, recipes, |s| &s.humidities)?;
+        let nodes = Library::new(substances, all, &axis.nodes, &angles, &RULE)?;
+        let usual = particles(substances, recipes, |s| std::slice::from_ref(&s.default_humidity))?;
+        let halves = Library::new(substances, usual, &between, &angles, &RULE)?;
+        Ok((nodes, halves))
     };
-    let (recipes, nodes, halves) = compute().map_err(refused)?;
-    Ok(Prepared { recipes, axis, nodes, halves })
+    let (nodes, halves) = compute().map_err(refused)?;
+    Ok(Prepared { axis, nodes, halves })
 }
 
 /// The fields of one species, gathered.
@@ -114,15 +128,13 @@ fn halves(nodes: &[Mixed], exact: &[Mixed]) -> Halves {
     worst
 }
 
-/// The table of a source and biome.
-pub(super) fn table(
-    raw: &RawData,
+/// The table of a recipe, whose optics are prepared.
+pub(crate) fn table(
+    substances: Substances<'_>,
     prepared: &Prepared,
-    source: AerosolSource,
-    biome: Biome,
+    made: &Recipe,
+    provenance: Vec<Provenance>,
 ) -> Result<Table, TableError> {
-    let made = prepared.recipes.iter().find(|r| r.source == source && r.biome == biome);
-    let made = made.ok_or_else(|| TableError::Inconsistent(format!("no recipe of {source} for {biome}")))?;
     let mut axes = vec![prepared.axis.clone(), Axis::new(COSINE.0, COSINE.1, prepared.nodes.cosines().to_vec())?];
     let mut fields = Vec::new();
     let (mut quadrature, mut misplaced, mut angle_error, mut correction) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
@@ -130,7 +142,7 @@ pub(super) fn table(
         let mut columns = Columns::default();
         let mut between = Halves::default();
         for &humidity in &recipe.humidities {
-            let mixed = species(&raw.aerosol_opac, &prepared.nodes, recipe, humidity).map_err(refused)?;
+            let mixed = species(substances, &prepared.nodes, recipe, humidity).map_err(refused)?;
             for one in &mixed {
                 columns.extinction.push(one.extinction);
                 columns.scattering.push(one.scattering);
@@ -142,7 +154,7 @@ pub(super) fn table(
                 columns.largest_correction = columns.largest_correction.max(one.correction.abs());
             }
             if humidity == recipe.default_humidity {
-                let exact = species(&raw.aerosol_opac, &prepared.halves, recipe, humidity).map_err(refused)?;
+                let exact = species(substances, &prepared.halves, recipe, humidity).map_err(refused)?;
                 between = halves(&mixed, &exact);
             }
         }
@@ -153,8 +165,6 @@ pub(super) fn table(
         add_species(&mut axes, &mut fields, recipe, columns, &between)?;
     }
     let settings = [
-        ("biome", biome.to_string()),
-        ("source", source.to_string()),
         ("composition", made.composition.clone()),
         ("particles", "homogeneous spheres, mixed externally".to_owned()),
         ("size average", format!("nested trapezoidal rules in ln r, {} to {} intervals", 4 * RULE.first, RULE.most)),
@@ -167,21 +177,20 @@ pub(super) fn table(
             format!("half-way between wavelengths, in every {MEASURED}th interval, at the default humidity"),
         ),
     ];
-    let mut provenance = vec![
-        raw.aerosol_opac.refractive_index.provenance.clone(),
-        raw.aerosol_opac.components.provenance.clone(),
-        raw.aerosol_opac.types.provenance.clone(),
-        raw.aerosol_opac.layers.provenance.clone(),
-    ];
-    if source == AerosolSource::Jaenicke {
-        provenance.push(raw.aerosol_jaenicke.modes.provenance.clone());
-    }
+    let title = match &made.origin {
+        Origin::Biome(source, biome) => format!("Aerosol of the biome {biome} after {source}"),
+        Origin::Own(name) => format!("Aerosol {name}"),
+    };
     Ok(Table {
         kind: Kind::Aerosol,
-        title: format!("Aerosol of the biome {biome} after {source}"),
+        title,
         axes,
         fields,
-        settings: settings.into_iter().map(|(key, value)| (key.to_owned(), value)).collect(),
+        settings: settings
+            .into_iter()
+            .chain(made.origin.settings())
+            .map(|(key, value)| (key.to_owned(), value))
+            .collect(),
         provenance,
     })
 }

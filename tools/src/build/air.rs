@@ -5,42 +5,20 @@ use crate::molecular::king;
 use crate::molecular::rayleigh::Rayleigh;
 use crate::profile::standard_atmosphere::{Air, StandardAtmosphere};
 use crate::raw::RawData;
-use crate::raw::us_standard_atmosphere::Level;
+use crate::raw::us_standard_atmosphere::{Level, UsStandardAtmosphere};
 use std::collections::BTreeMap;
 use tables::units::{TOP_ALTITUDE_M, WAVELENGTH_RANGE_NM};
 use tables::views::{ALTITUDE, WAVELENGTH};
-use tables::{Axis, Curve, Field, Kind, Scale, Table, TableError};
+use tables::{Axis, Curve, Field, Kind, Provenance, Scale, Table, TableError};
 
 /// Step in m of the altitude axis.
 const ALTITUDE_STEP: f64 = 250.0;
 
-/// Fields `temperature`, `pressure` and `number_density` against altitude.
-///
-/// Nodes every 250 m from 0 to 120 km, and the bases of the layers, where the gradient of
-/// temperature jumps.
+/// Fields `temperature`, `pressure` and `number_density` against altitude, at the nodes of [`altitudes`].
 pub(super) fn standard_atmosphere(raw: &RawData) -> Result<Table, TableError> {
     let atmosphere = StandardAtmosphere::new(&raw.atmosphere)?;
-    let steps = (TOP_ALTITUDE_M / ALTITUDE_STEP) as u32;
-    let mut nodes: Vec<f64> = (0..=steps).map(|i| f64::from(i) * ALTITUDE_STEP).collect();
-    nodes.extend(atmosphere.layer_bases());
-    nodes.sort_by(f64::total_cmp);
-    nodes.dedup();
-    let axis = Axis::new(ALTITUDE.0, ALTITUDE.1, nodes)?;
-    let air: Vec<Air> = axis.nodes.iter().map(|&z| atmosphere.at(z)).collect::<Result<_, _>>()?;
-    let levels = &raw.atmosphere.extension.rows;
-
-    let make = |name, unit, scale, of_air: fn(&Air) -> f64, of_level: fn(&Level) -> f64| -> Result<Field, TableError> {
-        let values: Vec<f64> = air.iter().map(of_air).collect();
-        let curve = Curve::new(axis.clone(), scale, values.clone())?;
-        let halves = between_nodes(&axis.nodes, |z| Ok((curve.at(z)?, of_air(&atmosphere.at(z)?))))?;
-        let error = largest_relative(halves).max(error_of_levels(levels, scale, of_level));
-        Ok(Field { scale, interpolation_error: Some(error), ..field(name, unit, &[ALTITUDE.0], error, values) })
-    };
-    let fields = vec![
-        make("temperature", "K", Scale::Linear, |a| a.temperature, |l| l.temperature)?,
-        make("pressure", "Pa", Scale::Logarithmic, |a| a.pressure, |l| l.pressure)?,
-        make("number_density", "m^-3", Scale::Logarithmic, |a| a.number_density, |l| l.number_density)?,
-    ];
+    let axis = Axis::new(ALTITUDE.0, ALTITUDE.1, altitudes(&atmosphere, &[]))?;
+    let fields = profile(&axis, |z| atmosphere.at(z), &raw.atmosphere.extension.rows)?;
     let settings = [
         ("altitude", "geometric; geopotential by the radius of 6356.766 km of the standard"),
         ("below 86 km", "defining layers; molar-mass ratio from 80 km"),
@@ -52,13 +30,52 @@ pub(super) fn standard_atmosphere(raw: &RawData) -> Result<Table, TableError> {
         axes: vec![axis],
         fields,
         settings: texts(&settings),
-        provenance: vec![
-            raw.atmosphere.layers.provenance.clone(),
-            raw.atmosphere.constants.provenance.clone(),
-            raw.atmosphere.molar_mass.provenance.clone(),
-            raw.atmosphere.extension.provenance.clone(),
-        ],
+        provenance: provenance(&raw.atmosphere),
     })
+}
+
+/// What the standard atmosphere is made from.
+pub(crate) fn provenance(raw: &UsStandardAtmosphere) -> Vec<Provenance> {
+    vec![
+        raw.layers.provenance.clone(),
+        raw.constants.provenance.clone(),
+        raw.molar_mass.provenance.clone(),
+        raw.extension.provenance.clone(),
+    ]
+}
+
+/// Altitudes in m every 250 m from 0 to 120 km, the bases of the layers, where the gradient of temperature jumps, and
+/// those of `more`.
+pub(crate) fn altitudes(atmosphere: &StandardAtmosphere, more: &[f64]) -> Vec<f64> {
+    let steps = (TOP_ALTITUDE_M / ALTITUDE_STEP) as u32;
+    let mut nodes: Vec<f64> = (0..=steps).map(|i| f64::from(i) * ALTITUDE_STEP).collect();
+    nodes.extend(atmosphere.layer_bases());
+    nodes.extend(more);
+    nodes.sort_by(f64::total_cmp);
+    nodes.dedup();
+    nodes
+}
+
+/// The fields of a profile of air, with their interpolation errors: the largest half-way between nodes, or between
+/// the tabulated `levels` that the profile rests on.
+pub(crate) fn profile(
+    axis: &Axis,
+    at: impl Fn(f64) -> Result<Air, TableError>,
+    levels: &[Level],
+) -> Result<Vec<Field>, TableError> {
+    let air: Vec<Air> = axis.nodes.iter().map(|&z| at(z)).collect::<Result<_, _>>()?;
+    let make = |name, unit, scale, of_air: fn(&Air) -> f64, of_level: fn(&Level) -> f64| -> Result<Field, TableError> {
+        let values: Vec<f64> = air.iter().map(of_air).collect();
+        let curve = Curve::new(axis.clone(), scale, values.clone())?;
+        let halves = between_nodes(&axis.nodes, |z| Ok((curve.at(z)?, of_air(&at(z)?))))?;
+        let error = largest_relative(halves).max(error_of_levels(levels, scale, of_level));
+        Ok(Field { scale, interpolation_error: Some(error), ..field(name, unit, &[ALTITUDE.0], error, values) })
+    };
+    Ok(vec![
+        make("temperature", "K", Scale::Linear, |a| a.temperature, |l| l.temperature)?,
+        make("pressure", "Pa", Scale::Logarithmic, |a| a.pressure, |l| l.pressure)?,
+        make("number_density", "m^-3", Scale::Logarithmic, |a| a.number_density, |l| l.number_density)?,
+    ])
 }
 
 /// Pairs of what `f` gives half-way between the nodes.
@@ -120,6 +137,6 @@ pub(super) fn rayleigh(raw: &RawData) -> Result<Table, TableError> {
 }
 
 /// Settings from pairs of texts.
-pub(super) fn texts(pairs: &[(&str, &str)]) -> BTreeMap<String, String> {
+pub(crate) fn texts(pairs: &[(&str, &str)]) -> BTreeMap<String, String> {
     pairs.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect()
 }

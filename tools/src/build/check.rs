@@ -86,7 +86,8 @@ impl fmt::Display for Difference {
 
 /// Rebuilds every table in memory, in parallel, and compares it with the file in `data_dir`: each
 /// value within its field's tolerance, everything else exactly (but for the axes' nodes, within 1e-12, and
-/// measured interpolation errors, within a tenth). Nothing is written. Hidden files and a `README.md` are not foreign.
+/// measured interpolation errors, within a tenth). Nothing is written. Hidden files, a `README.md` and
+/// temporary files of a write (see [`tables::file::replace`]) are not foreign.
 ///
 /// # Errors
 /// [`BuildError`] if the inputs cannot be taken or the folder cannot be listed; what is wrong with the
@@ -132,7 +133,8 @@ fn foreign_files(data_dir: &Path) -> std::io::Result<Vec<String>> {
     let mut foreign = Vec::new();
     for entry in std::fs::read_dir(data_dir)? {
         let name = entry?.file_name().to_string_lossy().into_owned();
-        if !(name.starts_with('.') || name == "README.md" || known.contains(&name)) {
+        let expected = name.starts_with('.') || name == "README.md" || tables::file::is_temporary(&name);
+        if !(expected || known.contains(&name)) {
             foreign.push(name);
         }
     }

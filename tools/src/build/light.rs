@@ -2,11 +2,11 @@
 
 use super::air::texts;
 use super::field;
-use crate::raw::RawData;
-use crate::raw::sun::COEFFICIENTS;
+use crate::raw::sun::{COEFFICIENTS, LimbDarkening};
+use crate::raw::{RawData, Source};
 use tables::units::WAVELENGTH_RANGE_NM;
 use tables::views::WAVELENGTH;
-use tables::{Axis, Interpolation, Kind, Outside, Table, TableError};
+use tables::{Axis, Field, Interpolation, Kind, Outside, Provenance, Table, TableError};
 
 /// Fields `irradiance` against wavelength and `limb_darkening` by wavelength and power.
 pub(super) fn sun(raw: &RawData) -> Result<Table, TableError> {
@@ -20,7 +20,20 @@ pub(super) fn sun(raw: &RawData) -> Result<Table, TableError> {
         .filter(|row| inside(row.wavelength_nm))
         .map(|row| (row.wavelength_nm, row.irradiance))
         .unzip();
-    let limb = &raw.sun.limb_darkening.rows;
+    let title = "Solar irradiance outside the atmosphere and limb darkening";
+    // Published to 3 or 4 digits.
+    let irradiance = field("irradiance", "W m^-2 nm^-1", &[WAVELENGTH.0], 1e-4, irradiance);
+    sun_of(title, (wavelengths, irradiance), &raw.sun.spectrum.provenance, &raw.sun.limb_darkening)
+}
+
+/// The table of a solar spectrum, at wavelengths in nm, with measured limb darkening.
+pub(crate) fn sun_of(
+    title: &str,
+    (wavelengths, irradiance): (Vec<f64>, Field),
+    spectrum: &Provenance,
+    limb_darkening: &Source<LimbDarkening>,
+) -> Result<Table, TableError> {
+    let limb = &limb_darkening.rows;
     let limb_wavelengths = limb.iter().map(|row| row.wavelength_nm).collect();
     let settings = [
         ("distance", "1 au"),
@@ -31,15 +44,14 @@ pub(super) fn sun(raw: &RawData) -> Result<Table, TableError> {
     ];
     Ok(Table {
         kind: Kind::Sun,
-        title: "Solar irradiance outside the atmosphere and limb darkening".into(),
+        title: title.into(),
         axes: vec![
             Axis::new(WAVELENGTH.0, WAVELENGTH.1, wavelengths)?,
             Axis::new("limb_wavelength", "nm", limb_wavelengths)?.beyond(Outside::Hold),
             Axis::uniform("power", "1", 0.0, 1.0, COEFFICIENTS)?.between(Interpolation::Node),
         ],
         fields: vec![
-            // Published to 3 or 4 digits.
-            field("irradiance", "W m^-2 nm^-1", &[WAVELENGTH.0], 1e-4, irradiance),
+            irradiance,
             // Published to 5 decimals.
             field(
                 "limb_darkening",
@@ -50,7 +62,7 @@ pub(super) fn sun(raw: &RawData) -> Result<Table, TableError> {
             ),
         ],
         settings: texts(&settings),
-        provenance: vec![raw.sun.spectrum.provenance.clone(), raw.sun.limb_darkening.provenance.clone()],
+        provenance: vec![spectrum.clone(), limb_darkening.provenance.clone()],
     })
 }
 

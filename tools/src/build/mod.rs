@@ -3,20 +3,21 @@
 //! The same inputs give the same bytes: nothing of the clock, the machine or the order of threads
 //! enters a table. Every table is read back through the `tables` crate before it is reported.
 
-mod aerosol;
-mod air;
+pub(crate) mod aerosol;
+pub(crate) mod air;
 mod check;
 mod ground;
-mod light;
+pub(crate) mod light;
 mod ozone;
 
 pub use check::{CheckReport, Difference, TableCheck, check, check_some};
 
+use crate::aerosol::recipe::Recipe;
 use crate::raw::{RawData, RawError};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use tables::views::{Aerosol, AerosolSource, Biome};
+use tables::views::{Aerosol, AerosolSource, Biome, Origin};
 use tables::{Axis, Field, Kind, Precision, Scale, Table, TableError, Tolerance, views};
 
 /// Why tables could not be made.
@@ -134,6 +135,7 @@ fn build_one(maker: &Maker, data_dir: &Path, target: Target) -> Result<Built, Bu
 /// Computes tables from inputs, and what several of them share only once.
 struct Maker<'a> {
     raw: &'a RawData,
+    recipes: Vec<Recipe>,
     aerosols: aerosol::Prepared,
 }
 
@@ -144,13 +146,19 @@ impl<'a> Maker<'a> {
             Target::Aerosol(source, biome) => Some((source, biome)),
         };
         let aerosols: Vec<_> = targets.iter().filter_map(aerosol).collect();
-        Ok(Self { raw, aerosols: aerosol::prepare(raw, &aerosols)? })
+        let recipes = aerosol::recipes(raw, &aerosols)?;
+        Ok(Self { raw, aerosols: aerosol::prepare((&raw.aerosol_opac).into(), &recipes)?, recipes })
     }
 
     fn table(&self, target: Target) -> Result<Table, TableError> {
         match target {
             Target::Single(kind) => table(self.raw, kind),
-            Target::Aerosol(source, biome) => aerosol::table(self.raw, &self.aerosols, source, biome),
+            Target::Aerosol(source, biome) => {
+                let recipe = self.recipes.iter().find(|recipe| recipe.origin == Origin::Biome(source, biome));
+                let none = || TableError::Inconsistent(format!("no recipe of {source} for {biome}"));
+                let provenance = aerosol::provenance(self.raw, source);
+                aerosol::table((&self.raw.aerosol_opac).into(), &self.aerosols, recipe.ok_or_else(none)?, provenance)
+            }
         }
     }
 }
@@ -174,7 +182,7 @@ pub fn table(raw: &RawData, kind: Kind) -> Result<Table, TableError> {
 }
 
 /// Reads a table through the typed view of its kind, as the renderer will.
-fn accept(table: &Table) -> Result<(), TableError> {
+pub(crate) fn accept(table: &Table) -> Result<(), TableError> {
     match table.kind {
         Kind::StandardAtmosphere => views::StandardAtmosphere::from_table(table).map(drop),
         Kind::Rayleigh => views::Rayleigh::from_table(table).map(drop),
@@ -195,7 +203,7 @@ fn precision(relative_error: f64) -> Precision {
 }
 
 /// A field over named axes, linear between nodes, stored for values with the given relative error.
-fn field(name: &str, unit: &str, axes: &[&str], relative_error: f64, values: Vec<f64>) -> Field {
+pub(crate) fn field(name: &str, unit: &str, axes: &[&str], relative_error: f64, values: Vec<f64>) -> Field {
     let precision = precision(relative_error);
     // Storage rounds by half of this; and exp, ln and powf differ between machines by a few 1e-16,
     // which sums and powers raise to some 1e-13.
@@ -221,12 +229,12 @@ fn months() -> Result<Axis, TableError> {
 }
 
 /// Two significant digits, so that the last bits of a machine do not show in a header.
-fn two_digits(x: f64) -> f64 {
+pub(crate) fn two_digits(x: f64) -> f64 {
     format!("{x:.1e}").parse().unwrap_or(x)
 }
 
 /// Largest |a / b - 1| of (a, b), to two digits.
-fn largest_relative(pairs: impl IntoIterator<Item = (f64, f64)>) -> f64 {
+pub(crate) fn largest_relative(pairs: impl IntoIterator<Item = (f64, f64)>) -> f64 {
     two_digits(pairs.into_iter().map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max))
 }
 

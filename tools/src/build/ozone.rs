@@ -1,6 +1,6 @@
 //! Tables of ozone: how it absorbs, and how much of it there is.
 
-use super::air::texts;
+use super::air::{self, texts};
 use super::{field, largest_relative, months};
 use crate::molecular::ozone::{REFERENCE_TEMPERATURE_K, fit};
 use crate::profile::ozone::{ClimatologicalProfile, arosa_densities, arosa_levels, climatology_levels, scaled};
@@ -114,14 +114,10 @@ pub(super) fn profiles(raw: &RawData) -> Result<Table, TableError> {
             field("column", "DU", &[MONTH.0, LATITUDE.0], COLUMN_ERROR, columns_du),
         ],
         settings: texts(&settings),
-        provenance: vec![
-            climatology.mixing_ratio.provenance.clone(),
-            climatology.columns.provenance.clone(),
-            raw.atmosphere.layers.provenance.clone(),
-            raw.atmosphere.constants.provenance.clone(),
-            raw.atmosphere.molar_mass.provenance.clone(),
-            raw.atmosphere.extension.provenance.clone(),
-        ],
+        provenance: vec![climatology.mixing_ratio.provenance.clone(), climatology.columns.provenance.clone()]
+            .into_iter()
+            .chain(air::provenance(&raw.atmosphere))
+            .collect(),
     })
 }
 

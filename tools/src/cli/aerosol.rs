@@ -1,6 +1,5 @@
 //! The subcommand `biomes`.
 
-use super::print;
 use clap::Args;
 use std::path::PathBuf;
 use tables::units::KM;
@@ -75,5 +74,5 @@ pub(super) fn biomes(args: &BiomesArgs) -> Result<(), String> {
             had.ground_extinction * height
         );
     }
-    print(&text)
+    super::output::print(text.as_bytes())
 }

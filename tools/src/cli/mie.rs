@@ -1,8 +1,8 @@
 //! The subcommand `mie`.
 
+use super::output::{print, put};
 use clap::{Args, ValueEnum};
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tools::mie::Instructions;
 use tools::{mie_cases, mie_tasks};
 
@@ -45,19 +45,18 @@ fn instructions(name: &str) -> Result<Instructions, String> {
 /// Solves the spheres of a file into another.
 pub(super) fn solve(args: &MieArgs) -> Result<(), String> {
     let named = |e: &dyn std::fmt::Display| format!("{}: {e}", args.cases.display());
-    let input = std::fs::read_to_string(&args.cases).map_err(|e| named(&e))?;
+    let input = std::fs::read_to_string(&args.cases).map_err(|e| named(&format!("cannot be read: {e}")))?;
+    // Better now than after the work.
+    tables::file::check_writable(&args.out).map_err(|e| format!("{}: cannot be written: {e}", args.out.display()))?;
+    let write = |csv: &str| put(csv.as_bytes(), Some(&args.out));
     let set = args.instructions.unwrap_or_else(Instructions::best);
     let done = match args.task {
-        Task::Cases => return write(&args.out, &mie_cases::solve(&input).map_err(|e| named(&e))?),
+        Task::Cases => return write(&mie_cases::solve(&input).map_err(|e| named(&e))?),
         Task::A => mie_tasks::efficiencies(&input, set, args.repeat),
         Task::B => mie_tasks::distributions(&input, set, args.repeat),
     };
     let done = done.map_err(|e| named(&e))?;
-    write(&args.out, &done.csv)?;
+    write(&done.csv)?;
     let line = format!("{{\"seconds_min\": {:e}, \"instructions\": \"{set}\"}}\n", done.fastest.as_secs_f64());
-    std::io::stdout().lock().write_all(line.as_bytes()).map_err(|e| format!("standard output: {e}"))
-}
-
-fn write(path: &Path, text: &str) -> Result<(), String> {
-    tables::file::replace(path, text.as_bytes()).map_err(|e| format!("{}: {e}", path.display()))
+    print(line.as_bytes())
 }

@@ -102,6 +102,12 @@ impl<B: DrawingBackend> Canvas<B> {
         self.backend.draw_circle(device(at), radius, &style(colour, 1.0), true).map_err(PlotError::drawing)
     }
 
+    /// A filled polygon.
+    pub(super) fn polygon(&mut self, corners: &[Point], colour: Colour) -> Result<(), PlotError> {
+        let corners: Vec<(i32, i32)> = corners.iter().map(|&p| device(p)).collect();
+        self.backend.fill_polygon(corners, &style(colour, 1.0)).map_err(PlotError::drawing)
+    }
+
     /// A line of the given look through points, inside the frame only.
     pub(super) fn curve(
         &mut self,
@@ -111,23 +117,24 @@ impl<B: DrawingBackend> Canvas<B> {
         stroke: Stroke,
     ) -> Result<(), PlotError> {
         const WIDTH: f64 = 2.2;
+        const DOT: f64 = 3.0;
         if stroke == Stroke::Marks {
             for &point in points.iter().flatten().filter(|p| frame.holds(**p)) {
-                self.disc(point, 3.4, colour)?;
+                self.disc(point, 4.4, colour)?;
             }
             return Ok(());
         }
         for run in clipped(points, frame) {
             match stroke {
-                Stroke::Solid | Stroke::Marks => self.solid(&run, colour, WIDTH)?,
+                Stroke::Solid | Stroke::Marks | Stroke::Filled => self.solid(&run, colour, WIDTH)?,
                 Stroke::Dashed => {
                     for dash in pieces(&run, 11.0, 6.0) {
                         self.solid(&dash, colour, WIDTH)?;
                     }
                 }
                 Stroke::Dotted => {
-                    for dash in pieces(&run, 2.2, 4.4) {
-                        self.solid(&dash, colour, WIDTH)?;
+                    for dash in pieces(&run, DOT, 2.0 * DOT) {
+                        self.solid(&dash, colour, DOT)?;
                     }
                 }
             }

@@ -3,7 +3,7 @@
 use super::PlotError;
 use super::canvas::{Canvas, Frame, Place, Point};
 use super::colours::{self, BLACK, GREY, GRID, WHITE};
-use super::model::{Axis, Cells, Curve, Figure, Key, Panel, Stroke};
+use super::model::{Axis, Cells, Colour, Curve, Figure, Key, Panel, Stroke};
 use plotters::backend::DrawingBackend;
 
 /// Width and height of a picture.
@@ -16,14 +16,13 @@ const NUMBER: f64 = 20.0;
 
 /// Room for the numbers and the label of an axis.
 const LEFT: f64 = 116.0;
-/// The widest texts of an axis that fit there, and the room that wider ones need beside their width.
-const TEXTS: f64 = 62.0;
-const AROUND: f64 = 64.0;
 /// Room at the left of a panel whose axis there has neither label nor texts: it is its neighbour's.
 const JOINED: f64 = 4.0;
 const BELOW: f64 = 82.0;
 const RIGHT: f64 = 34.0;
 const ABOVE: f64 = 26.0;
+/// What of it the label takes.
+const LABEL_ROOM: f64 = 38.0;
 /// Room for a line of heading.
 const LINE: f64 = 36.0;
 /// Room for the bar of a heat map: distance, width, and its numbers and label.
@@ -35,6 +34,34 @@ const KEY_LINE: f64 = 30.0;
 const SAMPLE: f64 = 46.0;
 const GAP: f64 = 12.0;
 
+/// Room that a panel needs around the frame of its axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Margins {
+    left: f64,
+    above: f64,
+    right: f64,
+    below: f64,
+}
+
+fn margins<B: DrawingBackend>(canvas: &Canvas<B>, panel: &Panel) -> Margins {
+    let title = if panel.title.is_empty() { 0.0 } else { LINE };
+    let beside = match (&panel.cells, panel.key) {
+        (Some(cells), _) if cells.bar => BAR.0 + BAR.1 + BAR.2,
+        (None, Key::Beside) => key_width(canvas, panel) + GAP,
+        _ => 0.0,
+    };
+    // Numbers and label of the ordinate; names are wider than numbers.
+    let widest = panel.y.names.iter().map(|(_, name)| canvas.text_width(name, NUMBER)).fold(0.0, f64::max);
+    let joined = panel.y.label.is_empty() && ticks(&panel.y).iter().all(|tick| tick.text.as_deref() == Some(""));
+    let left = match panel.y.label.as_str() {
+        _ if joined => JOINED,
+        "" => (LEFT - LABEL_ROOM).max(widest + 60.0),
+        _ => LEFT.max(widest + 60.0),
+    };
+    let below = if panel.x.label.is_empty() { BELOW - LABEL_ROOM } else { BELOW };
+    Margins { left, above: ABOVE + title, right: RIGHT + beside, below }
+}
+
 /// Draws a figure.
 pub(super) fn draw<B: DrawingBackend>(canvas: &mut Canvas<B>, figure: &Figure) -> Result<(), PlotError> {
     let (width, height) = (f64::from(SIZE.0), f64::from(SIZE.1));
@@ -44,53 +71,66 @@ pub(super) fn draw<B: DrawingBackend>(canvas: &mut Canvas<B>, figure: &Figure) -
         canvas.text(&figure.title, (0.5 * width, 30.0), HEADING, BLACK, Place::Centred)?;
         top = LINE + 8.0;
     }
-    let row_height = (height - top) / figure.rows.len().max(1) as f64;
-    for row in &figure.rows {
+    top = draw_common_key(canvas, &figure.key, top, width)?;
+    // What is left between the margins of all rows is shared equally by their frames; so across a row, by its shares.
+    let rows: Vec<Vec<Margins>> =
+        figure.rows.iter().map(|row| row.iter().map(|panel| margins(canvas, panel)).collect()).collect();
+    let most = |row: &[Margins], of: fn(&Margins) -> f64| row.iter().map(of).fold(0.0, f64::max);
+    let around: f64 = rows.iter().map(|row| most(row, |m| m.above) + most(row, |m| m.below)).sum();
+    let frame_height = (height - top - around) / figure.rows.len().max(1) as f64;
+    for (row, margins) in figure.rows.iter().zip(&rows) {
+        top += most(margins, |m| m.above);
         let total: f64 = row.iter().map(|panel| panel.share).sum();
-        let extra: Vec<f64> = row.iter().map(|panel| left_room(canvas, panel) - LEFT + bar_room(panel)).collect();
-        let shared = width - extra.iter().sum::<f64>();
+        let free = width - margins.iter().map(|m| m.left + m.right).sum::<f64>();
         let mut left = 0.0;
-        for (panel, extra) in row.iter().zip(extra) {
-            let right = left + extra + shared * panel.share / total;
-            draw_panel(canvas, panel, Frame { left, top, right, bottom: top + row_height })?;
-            left = right;
+        for (panel, m) in row.iter().zip(margins) {
+            let right = left + m.left + free * panel.share / total;
+            let frame = Frame { left: left + m.left, top, right, bottom: top + frame_height };
+            draw_panel(canvas, panel, frame, left)?;
+            left = right + m.right;
         }
-        top += row_height;
+        top += frame_height + most(margins, |m| m.below);
     }
     Ok(())
 }
 
-/// Room at the left of a panel.
-fn left_room<B: DrawingBackend>(canvas: &Canvas<B>, panel: &Panel) -> f64 {
-    let widths = ticks(&panel.y).into_iter().filter_map(|tick| tick.text).map(|text| canvas.text_width(&text, NUMBER));
-    let widest = widths.fold(0.0, f64::max);
-    match widest {
-        0.0 if panel.y.label.is_empty() => JOINED,
-        narrow if narrow <= TEXTS => LEFT,
-        wide => wide + AROUND,
+/// Draws the key of all panels from `top`, in lines that fit the width, and gives where it ends.
+fn draw_common_key<B: DrawingBackend>(
+    canvas: &mut Canvas<B>,
+    key: &[Curve],
+    top: f64,
+    width: f64,
+) -> Result<f64, PlotError> {
+    if key.is_empty() {
+        return Ok(top);
     }
+    let entry = |curve: &Curve| SAMPLE + 3.0 * GAP + canvas.text_width(&curve.name, NUMBER);
+    let widths: Vec<f64> = key.iter().map(entry).collect();
+    // As few lines as hold them, equally many entries in each.
+    let room = width - 2.0 * RIGHT;
+    let fits = |lines: usize| widths.chunks(key.len().div_ceil(lines)).all(|line| line.iter().sum::<f64>() <= room);
+    let lines = (1..=key.len()).find(|&lines| fits(lines)).unwrap_or(key.len());
+    let mut y = top + 0.5 * KEY_LINE;
+    let each = key.len().div_ceil(lines);
+    for (line, widths) in key.chunks(each).zip(widths.chunks(each)) {
+        let mut left = 0.5 * (width - widths.iter().sum::<f64>());
+        for (curve, entry) in line.iter().zip(widths) {
+            draw_sample(canvas, &curve.name, curve.colour, curve.stroke, (left, y))?;
+            left += entry;
+        }
+        y += KEY_LINE;
+    }
+    Ok(y - 0.5 * KEY_LINE)
 }
 
-/// Room for the bar of a panel's heat map.
-fn bar_room(panel: &Panel) -> f64 {
-    if panel.cells.as_ref().is_some_and(|cells| cells.bar) { BAR.0 + BAR.1 + BAR.2 } else { 0.0 }
-}
-
-/// Draws a panel with its axes into the room given.
-fn draw_panel<B: DrawingBackend>(canvas: &mut Canvas<B>, panel: &Panel, room: Frame) -> Result<(), PlotError> {
-    let title = if panel.title.is_empty() { 0.0 } else { LINE };
-    let key_width = key_width(canvas, panel);
-    let beside = match (&panel.cells, panel.key) {
-        (None, Key::Beside) => key_width + GAP,
-        _ => bar_room(panel),
-    };
-    let frame = Frame {
-        left: room.left + left_room(canvas, panel),
-        top: room.top + ABOVE + title,
-        right: room.right - RIGHT - beside,
-        bottom: room.bottom - BELOW,
-    };
-    if title > 0.0 {
+/// Draws a panel with its axes around the frame given; its label stands at `left`.
+fn draw_panel<B: DrawingBackend>(
+    canvas: &mut Canvas<B>,
+    panel: &Panel,
+    frame: Frame,
+    left: f64,
+) -> Result<(), PlotError> {
+    if !panel.title.is_empty() {
         let middle = 0.5 * (frame.left + frame.right);
         canvas.text(&panel.title, (middle, frame.top - 20.0), LABEL, BLACK, Place::Centred)?;
     }
@@ -102,14 +142,24 @@ fn draw_panel<B: DrawingBackend>(canvas: &mut Canvas<B>, panel: &Panel, room: Fr
         draw_cells(canvas, cells, frame, place)?;
     }
     draw_ticks(canvas, panel, frame)?;
+    for area in &panel.areas {
+        let cut = |y: f64| y.clamp(frame.top, frame.bottom);
+        let edge = |of: fn(&(f64, f64, f64)) -> (f64, f64)| {
+            let points = area.points.iter().map(of).filter_map(|(x, y)| place(x, y));
+            points.map(|(x, y)| (x, cut(y))).collect::<Vec<Point>>()
+        };
+        let mut outline = edge(|p| (p.0, p.1));
+        outline.extend(edge(|p| (p.0, p.2)).into_iter().rev());
+        canvas.polygon(&outline, area.colour)?;
+    }
     for curve in &panel.curves {
         let points: Vec<Option<Point>> = curve.points.iter().map(|&(x, y)| place(x, y)).collect();
         canvas.curve(&points, frame, curve.colour, curve.stroke)?;
     }
     canvas.rectangle(frame, BLACK, false)?;
     canvas.text(&panel.x.label, (0.5 * (frame.left + frame.right), frame.bottom + 44.0), LABEL, BLACK, Place::Below)?;
-    canvas.text(&panel.y.label, (room.left + 14.0, 0.5 * (frame.top + frame.bottom)), LABEL, BLACK, Place::Upwards)?;
-    draw_key(canvas, panel, frame, key_width)
+    canvas.text(&panel.y.label, (left + 14.0, 0.5 * (frame.top + frame.bottom)), LABEL, BLACK, Place::Upwards)?;
+    draw_key(canvas, panel, frame)
 }
 
 fn draw_ticks<B: DrawingBackend>(canvas: &mut Canvas<B>, panel: &Panel, frame: Frame) -> Result<(), PlotError> {
@@ -189,27 +239,24 @@ fn draw_bar<B: DrawingBackend>(canvas: &mut Canvas<B>, cells: &Cells, frame: Fra
     canvas.text(&cells.scale.label, (right + 72.0, middle), LABEL, BLACK, Place::Upwards)
 }
 
-/// Curves that have a name, from the top of the key.
-fn named(panel: &Panel) -> impl Iterator<Item = &Curve> {
-    panel.curves.iter().filter(|curve| !curve.name.is_empty())
+/// Name, colour and look of what has a name, from the top of the key: curves, then areas, the highest first.
+fn named(panel: &Panel) -> Vec<(&str, Colour, Stroke)> {
+    let curves = panel.curves.iter().map(|curve| (curve.name.as_str(), curve.colour, curve.stroke));
+    let areas = panel.areas.iter().rev().map(|area| (area.name.as_str(), area.colour, Stroke::Filled));
+    curves.chain(areas).filter(|(name, ..)| !name.is_empty()).collect()
 }
 
 fn key_width<B: DrawingBackend>(canvas: &Canvas<B>, panel: &Panel) -> f64 {
-    let widest = named(panel).map(|curve| canvas.text_width(&curve.name, NUMBER)).fold(0.0, f64::max);
+    let widest = named(panel).into_iter().map(|(name, ..)| canvas.text_width(name, NUMBER)).fold(0.0, f64::max);
     widest + SAMPLE + 3.0 * GAP
 }
 
-fn draw_key<B: DrawingBackend>(
-    canvas: &mut Canvas<B>,
-    panel: &Panel,
-    frame: Frame,
-    width: f64,
-) -> Result<(), PlotError> {
-    let lines = named(panel).count();
-    if lines == 0 || panel.key == Key::None {
+fn draw_key<B: DrawingBackend>(canvas: &mut Canvas<B>, panel: &Panel, frame: Frame) -> Result<(), PlotError> {
+    let entries = named(panel);
+    if entries.is_empty() || panel.key == Key::None {
         return Ok(());
     }
-    let height = lines as f64 * KEY_LINE + GAP;
+    let (width, height) = (key_width(canvas, panel), entries.len() as f64 * KEY_LINE + GAP);
     let (low, high) = (frame.bottom - GAP - height, frame.top + GAP);
     let (near, far) = (frame.left + GAP, frame.right - GAP - width);
     let (left, top) = match panel.key {
@@ -224,17 +271,29 @@ fn draw_key<B: DrawingBackend>(
         canvas.rectangle(inside, WHITE, true)?;
         canvas.rectangle(inside, GRID, false)?;
     }
-    for (i, curve) in named(panel).enumerate() {
+    for (i, (name, colour, stroke)) in entries.into_iter().enumerate() {
         let y = top + 0.5 * GAP + (i as f64 + 0.5) * KEY_LINE;
-        let (start, end) = ((left + GAP, y), (left + GAP + SAMPLE, y));
-        let sample = match curve.stroke {
-            Stroke::Marks => vec![Some((0.5 * (start.0 + end.0), y))],
-            _ => vec![Some(start), Some(end)],
-        };
-        canvas.curve(&sample, inside, curve.colour, curve.stroke)?;
-        canvas.text(&curve.name, (end.0 + GAP, y), NUMBER, BLACK, Place::RightOf)?;
+        draw_sample(canvas, name, colour, stroke, (left, y))?;
     }
     Ok(())
+}
+
+/// One line of a key: a sample of the look, then the name.
+fn draw_sample<B: DrawingBackend>(
+    canvas: &mut Canvas<B>,
+    name: &str,
+    colour: Colour,
+    stroke: Stroke,
+    (left, y): Point,
+) -> Result<(), PlotError> {
+    let (start, end) = (left + GAP, left + GAP + SAMPLE);
+    let around = Frame { left: start, top: y - 0.3 * KEY_LINE, right: end, bottom: y + 0.3 * KEY_LINE };
+    match stroke {
+        Stroke::Filled => canvas.rectangle(around, colour, true)?,
+        Stroke::Marks => canvas.curve(&[Some((0.5 * (start + end), y))], around, colour, stroke)?,
+        _ => canvas.curve(&[Some((start, y)), Some((end, y))], around, colour, stroke)?,
+    }
+    canvas.text(name, (end + GAP, y), NUMBER, BLACK, Place::RightOf)
 }
 
 /// A mark on an axis.

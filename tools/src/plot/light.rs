@@ -1,8 +1,9 @@
 //! Figures of the sun.
 
 use super::colours::{ORANGE, viridis};
+use super::grids::points;
 use super::model::{Axis, Curve, Figure, Key, Panel};
-use super::{Plot, PlotError, points};
+use super::{Plot, PlotError};
 use crate::data::Data;
 use crate::frame::Frame;
 use tables::TableError;
@@ -51,7 +52,7 @@ pub(super) fn sun(data: Data<'_>) -> Result<Plot, PlotError> {
         let values = nm.iter().map(|&w| relative(w, mu)).collect::<Result<_, _>>()?;
         columns.push((format!("relative_intensity_mu_{mu:.1}"), values));
     }
-    let title = "The sun above the atmosphere".into();
+    let title = "The sun above the atmosphere";
     let rows = vec![vec![spectrum.share(1.35), disc]];
-    Ok(Plot { figure: Figure { title, rows }, frame: Frame::new(columns)? })
+    Ok(Plot { figure: Figure::new(title, rows), frame: Frame::new(columns)? })
 }

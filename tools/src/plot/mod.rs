@@ -1,29 +1,36 @@
 //! Figures of what the tables hold: each as SVG, as PNG, and as a CSV of the numbers shown.
 //!
 //! A figure is drawn from the written tables, through [`tables::views`], so it shows what a
-//! renderer will use. One function makes each, and [`write()`] writes it.
+//! renderer will use. One function makes each, and [`write()`] writes it. What the thesis had stands beside, dotted.
 
+mod aerosol;
 mod air;
 mod canvas;
 mod coefficients;
 pub mod colours;
+mod depth;
+mod grids;
 mod layout;
 mod light;
 pub mod model;
 mod ozone;
 mod picture;
+mod settings;
 mod text;
 
 #[cfg(feature = "study")]
 pub(crate) use layout::power_of_ten;
 pub use picture::{png, svg};
+pub use settings::{Settings, Units};
 
 use crate::data::Data;
 use crate::frame::Frame;
+use crate::study::thesis::Thesis;
 use model::Figure;
 use polars::prelude::PolarsError;
 use std::path::{Path, PathBuf};
 use tables::TableError;
+use tables::views::Biome;
 
 /// Why a figure could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -37,7 +44,7 @@ pub enum PlotError {
     /// Drawing or encoding failed.
     #[error("drawing: {0}")]
     Drawing(String),
-    /// A month that is none, or a latitude or wavelength that the tables do not have.
+    /// A month that is none, or a latitude, humidity or wavelength that the tables do not have.
     #[error("{name} {value}: {low} to {high} is possible")]
     Outside {
         /// What was asked for.
@@ -48,6 +55,12 @@ pub enum PlotError {
         low: f64,
         /// Highest value.
         high: f64,
+    },
+    /// A figure of aerosols was asked for without any.
+    #[error("{figure}: shows the aerosol of a biome, and none is chosen")]
+    Clear {
+        /// Its name.
+        figure: &'static str,
     },
     /// A file or its folder cannot be written.
     #[error("{}: cannot be written: {source}", path.display())]
@@ -74,34 +87,43 @@ pub struct Plot {
     pub frame: Frame,
 }
 
-/// The figures, in the order in which they are made.
+/// The figures, in the order in which they are made. The first five redraw 5.1 to 5.5 of the thesis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Name {
     /// Number density, pressure and temperature of air.
     NumberDensity,
     /// Ozone by month at one latitude.
     OzoneMonths,
-    /// Ozone column by month and latitude.
-    OzoneLatitudes,
-    /// Scattering and absorption cross-sections.
+    /// Scattering and absorption cross-sections of molecules.
     CrossSections,
+    /// Concentration and cross-sections of a biome's aerosol.
+    Aerosol,
     /// Scattering, absorption and extinction against altitude.
     Coefficients,
-    /// Vertical optical depth against wavelength.
+    /// Vertical optical depth against wavelength, by species.
     OpticalDepth,
+    /// Single-scattering albedo and asymmetry of the biomes against wavelength.
+    AlbedoAsymmetry,
+    /// Phase functions of the biomes.
+    PhaseFunctions,
+    /// Ozone column by month and latitude.
+    OzoneLatitudes,
     /// Solar irradiance and limb darkening.
     Sun,
 }
 
 impl Name {
     /// Every figure.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 10] = [
         Self::NumberDensity,
         Self::OzoneMonths,
-        Self::OzoneLatitudes,
         Self::CrossSections,
+        Self::Aerosol,
         Self::Coefficients,
         Self::OpticalDepth,
+        Self::AlbedoAsymmetry,
+        Self::PhaseFunctions,
+        Self::OzoneLatitudes,
         Self::Sun,
     ];
 
@@ -111,93 +133,64 @@ impl Name {
         match self {
             Self::NumberDensity => "number-density",
             Self::OzoneMonths => "ozone-months",
-            Self::OzoneLatitudes => "ozone-latitudes",
             Self::CrossSections => "cross-sections",
+            Self::Aerosol => "aerosol",
             Self::Coefficients => "coefficients",
             Self::OpticalDepth => "optical-depth",
+            Self::AlbedoAsymmetry => "albedo-asymmetry",
+            Self::PhaseFunctions => "phase-functions",
+            Self::OzoneLatitudes => "ozone-latitudes",
             Self::Sun => "sun",
         }
     }
-}
 
-/// What a figure that shows one case shows.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
-    /// Wavelength, nm.
-    pub wavelength_nm: f64,
-    /// Month, 1 to 12.
-    pub month: u8,
-    /// Latitude, degrees, north positive.
-    pub latitude_deg: f64,
-}
-
-impl Default for Settings {
-    /// Green light in June at 45 degrees north.
-    fn default() -> Self {
-        Self { wavelength_nm: 550.0, month: 6, latitude_deg: 45.0 }
+    /// Whether it shows nothing in clear air.
+    #[must_use]
+    pub fn needs_biome(self) -> bool {
+        matches!(self, Self::Aerosol | Self::AlbedoAsymmetry | Self::PhaseFunctions)
     }
 }
 
-impl Settings {
-    /// Refuses what the tables do not have.
-    fn validate(&self) -> Result<(), PlotError> {
-        let (short, long) = tables::units::WAVELENGTH_RANGE_NM;
-        for (name, value, low, high) in [
-            ("wavelength in nm", self.wavelength_nm, short, long),
-            ("month", f64::from(self.month), 1.0, 12.0),
-            ("latitude in degrees", self.latitude_deg, -90.0, 90.0),
-        ] {
-            if !(low..=high).contains(&value) {
-                return Err(PlotError::Outside { name, value, low, high });
-            }
-        }
-        Ok(())
-    }
-
-    /// The case in words: "June, 45° N".
-    fn place(&self) -> String {
-        let month = MONTHS[usize::from(self.month.clamp(1, 12)) - 1];
-        format!("{month}, {}", latitude(self.latitude_deg))
-    }
-}
-
-/// Names of the months.
-const MONTHS: [&str; 12] = [
-    "January",
-    "February",
-    "March",
-    "April",
-    "May",
-    "June",
-    "July",
-    "August",
-    "September",
-    "October",
-    "November",
-    "December",
-];
-
-/// A latitude in words.
-fn latitude(degrees: f64) -> String {
-    let side = if degrees < 0.0 { " S" } else { " N" };
-    format!("{}°{}", degrees.abs(), if degrees == 0.0 { "" } else { side })
-}
-
-/// Makes a figure from the tables of a folder.
+/// Makes the figures of a name from the tables of a folder: one, or one for each biome. Gives their names, that of the
+/// biome after a dash. With `thesis`, its values stand beside, dotted.
 ///
 /// # Errors
-/// [`PlotError`] if a table cannot be used or a setting lies outside the tables.
-pub fn make(name: Name, data: Data<'_>, settings: &Settings) -> Result<Plot, PlotError> {
+/// [`PlotError`] if a table cannot be used, a setting lies outside the tables, or a figure of biomes has none.
+pub fn make(
+    name: Name,
+    data: Data<'_>,
+    settings: &Settings,
+    thesis: Option<&Thesis>,
+) -> Result<Vec<(String, Plot)>, PlotError> {
     settings.validate()?;
-    match name {
-        Name::NumberDensity => air::number_density(data),
-        Name::OzoneMonths => ozone::months(data, settings),
-        Name::OzoneLatitudes => ozone::latitudes(data),
-        Name::CrossSections => coefficients::cross_sections(data),
-        Name::Coefficients => coefficients::against_altitude(data, settings),
-        Name::OpticalDepth => coefficients::optical_depth(data, settings),
-        Name::Sun => light::sun(data),
+    let biomes = &settings.biomes;
+    if biomes.is_empty() && name.needs_biome() {
+        return Err(PlotError::Clear { figure: name.as_str() });
     }
+    let of_biome = |biome: &Biome| format!("{}-{biome}", name.as_str());
+    let plot = match name {
+        Name::Aerosol => {
+            let one = |b: &Biome| Ok((of_biome(b), aerosol::of_biome(data, settings, thesis, *b)?));
+            return biomes.iter().map(one).collect();
+        }
+        Name::Coefficients if !biomes.is_empty() => {
+            let one = |b: &Biome| {
+                let plot = coefficients::against_altitude(data, settings, thesis, Some(*b))?;
+                Ok((of_biome(b), plot))
+            };
+            return biomes.iter().map(one).collect();
+        }
+        Name::Coefficients => coefficients::against_altitude(data, settings, thesis, None)?,
+        Name::NumberDensity => air::number_density(data, settings, thesis)?,
+        Name::OzoneMonths => ozone::months(data, settings, thesis)?,
+        Name::OzoneLatitudes => ozone::latitudes(data)?,
+        Name::CrossSections => coefficients::cross_sections(data, settings, thesis)?,
+        Name::OpticalDepth => depth::optical_depth(data, settings, thesis)?,
+        Name::AlbedoAsymmetry => aerosol::albedo_asymmetry(data, settings, thesis)?,
+        Name::PhaseFunctions => aerosol::phase_functions(data, settings, thesis)?,
+        Name::Sun => light::sun(data)?,
+    };
+    Ok(vec![(name.as_str().to_owned(), plot)])
 }
 
 /// Writes `NAME.svg`, `NAME.png` and `NAME.csv` to a folder, which is made if it is not there, each
@@ -217,35 +210,4 @@ pub fn write(plot: &Plot, name: &str, folder: &Path) -> Result<[PathBuf; 3], Plo
         tables::file::replace(path, &bytes).map_err(failed(path))?;
     }
     Ok(paths)
-}
-
-/// Points (value, altitude in km) of values at altitudes in m.
-fn against_km(values: &[f64], altitudes: &[f64]) -> Vec<(f64, f64)> {
-    values.iter().zip(altitudes).map(|(&v, &z)| (v, z / tables::units::KM)).collect()
-}
-
-/// Points (x, y).
-fn points(x: &[f64], y: &[f64]) -> Vec<(f64, f64)> {
-    x.iter().copied().zip(y.iter().copied()).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cases_in_words() {
-        assert_eq!(Settings::default().place(), "June, 45° N");
-        assert_eq!([latitude(-12.5), latitude(0.0)], ["12.5° S", "0°"]);
-    }
-
-    #[test]
-    fn settings_outside_the_tables_are_refused() {
-        let ok = Settings::default();
-        assert!(ok.validate().is_ok());
-        assert!(Settings { month: 13, ..ok }.validate().is_err());
-        assert!(Settings { wavelength_nm: f64::NAN, ..ok }.validate().is_err());
-        let error = Settings { latitude_deg: 91.0, ..ok }.validate().expect_err("outside");
-        assert_eq!(error.to_string(), "latitude in degrees 91: -90 to 90 is possible");
-    }
 }

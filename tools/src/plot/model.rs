@@ -8,8 +8,24 @@ pub type Colour = (u8, u8, u8);
 pub struct Figure {
     /// Heading above all panels; empty for none.
     pub title: String,
-    /// Rows of equal height; the panels of a row stand side by side.
+    /// Names below the heading, side by side, for curves that panels have in common. Only names and looks count.
+    pub key: Vec<Curve>,
+    /// Rows whose panels are equally high and stand side by side.
     pub rows: Vec<Vec<Panel>>,
+}
+
+impl Figure {
+    /// A figure without a key of its own.
+    #[must_use]
+    pub fn new(title: impl Into<String>, rows: Vec<Vec<Panel>>) -> Self {
+        Self { title: title.into(), key: Vec::new(), rows }
+    }
+
+    /// The same figure with a key for all panels.
+    #[must_use]
+    pub fn key(self, key: Vec<Curve>) -> Self {
+        Self { key, ..self }
+    }
 }
 
 /// Two axes and what is drawn between them.
@@ -21,10 +37,12 @@ pub struct Panel {
     pub x: Axis,
     /// The axis at the left.
     pub y: Axis,
-    /// Width relative to the other panels of the row.
+    /// Width between the axes relative to the other panels of the row.
     pub share: f64,
     /// Cells of a heat map, drawn first.
     pub cells: Option<Cells>,
+    /// Areas, drawn next, the first at the bottom.
+    pub areas: Vec<Area>,
     /// Curves, the first at the bottom.
     pub curves: Vec<Curve>,
     /// Where the names of the curves stand.
@@ -35,7 +53,8 @@ impl Panel {
     /// A panel of full width with a key inside at the top right.
     #[must_use]
     pub fn new(x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
-        Self { title: String::new(), x, y, share: 1.0, cells: None, curves, key: Key::TopRight }
+        let (title, cells, areas) = (String::new(), None, Vec::new());
+        Self { title, x, y, share: 1.0, cells, areas, curves, key: Key::TopRight }
     }
 
     /// The same panel with a text above it.
@@ -48,6 +67,12 @@ impl Panel {
     #[must_use]
     pub fn share(self, share: f64) -> Self {
         Self { share, ..self }
+    }
+
+    /// The same panel with areas below its curves.
+    #[must_use]
+    pub fn areas(self, areas: Vec<Area>) -> Self {
+        Self { areas, ..self }
     }
 
     /// The same panel with its key elsewhere.
@@ -77,7 +102,7 @@ pub enum Key {
 /// One axis of a panel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// Quantity and unit.
+    /// Quantity and unit; a space for none, nothing for none and no room.
     pub label: String,
     /// What the lower and upper end stand for; both positive on a logarithmic axis.
     pub range: (f64, f64),
@@ -129,6 +154,8 @@ pub enum Stroke {
     Dotted,
     /// A disc at each point and no line.
     Marks,
+    /// In keys alone: a filled area.
+    Filled,
 }
 
 /// Points with the look that they share.
@@ -158,6 +185,34 @@ impl Curve {
     }
 }
 
+/// What lies between two curves over the same abscissae, filled.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Area {
+    /// Name in the key; empty for none.
+    pub name: String,
+    /// Colour.
+    pub colour: Colour,
+    /// (x, lower y, upper y) in the units of the axes, cut off at the ends of the ordinate. Points that have no place
+    /// are left out.
+    pub points: Vec<(f64, f64, f64)>,
+}
+
+/// Areas that lie on each other, the first on the abscissa: each as high as its values at `x`.
+#[must_use]
+pub fn stacked(x: &[f64], layers: impl IntoIterator<Item = (String, Colour, Vec<f64>)>) -> Vec<Area> {
+    let mut floor = vec![0.0; x.len()];
+    let mut areas = Vec::new();
+    for (name, colour, values) in layers {
+        let mut points = Vec::new();
+        for ((&x, low), value) in x.iter().zip(&mut floor).zip(values) {
+            points.push((x, *low, *low + value));
+            *low += value;
+        }
+        areas.push(Area { name, colour, points });
+    }
+    areas
+}
+
 /// Cells of a heat map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cells {
@@ -185,6 +240,14 @@ impl Cells {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn areas_lie_on_each_other() {
+        let layer = |name: &str, values: [f64; 2]| (name.to_owned(), (0, 0, 0), values.to_vec());
+        let areas = stacked(&[0.0, 1.0], [layer("a", [1.0, 2.0]), layer("b", [0.5, 0.0])]);
+        assert_eq!(areas[0].points, [(0.0, 0.0, 1.0), (1.0, 0.0, 2.0)]);
+        assert_eq!(areas[1].points, [(0.0, 1.0, 1.5), (1.0, 2.0, 2.0)]);
+    }
 
     #[test]
     fn places_on_axes() {

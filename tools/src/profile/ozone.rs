@@ -132,6 +132,21 @@ fn geometric(atmosphere: &StandardAtmosphere, level: f64) -> Result<f64, TableEr
     Ok(0.5 * (low + high))
 }
 
+/// Geometric altitude in m at which the standard atmosphere has the pressure p in Pa. Above the pressure P_0 at sea
+/// level it is negative, (R* T_0 / (g_0 M_0)) ln(P_0 / p), T_0 the temperature there.
+///
+/// # Errors
+/// [`TableError::OutOfRange`] if the standard atmosphere ends too low.
+pub fn altitude_of_pressure(atmosphere: &StandardAtmosphere, pressure: f64) -> Result<f64, TableError> {
+    let ground = atmosphere.at(0.0)?;
+    if pressure <= ground.pressure {
+        return geometric(atmosphere, pressure_altitude(pressure));
+    }
+    let constants = atmosphere.constants();
+    let scale_height = constants.gas_constant * ground.temperature / (constants.gravity * constants.molar_mass);
+    Ok(scale_height * (ground.pressure / pressure).ln())
+}
+
 /// Number densities at a grid of altitudes, scaled to a column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScaledProfile {

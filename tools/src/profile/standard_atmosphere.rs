@@ -86,6 +86,19 @@ impl StandardAtmosphere {
         })
     }
 
+    /// The constants of its equations.
+    #[must_use]
+    pub fn constants(&self) -> &Constants {
+        &self.constants
+    }
+
+    /// Geometric altitude z in m of the geopotential altitude H in m': z = r_0 H / (r_0 - H) (equation 19).
+    #[must_use]
+    pub fn geometric(&self, geopotential: f64) -> f64 {
+        let r = self.constants.earth_radius;
+        r * geopotential / (r - geopotential)
+    }
+
     /// Geopotential altitude H in m' of the geometric altitude z in m: H = r_0 z / (r_0 + z), with
     /// r_0 = 6356.766 km (equation 18).
     #[must_use]
@@ -94,12 +107,10 @@ impl StandardAtmosphere {
         r * altitude / (r + altitude)
     }
 
-    /// Geometric altitudes in m of the bases of the layers, z = r_0 H / (r_0 - H) (equation 19):
-    /// where the gradient of temperature jumps.
+    /// Geometric altitudes in m of the bases of the layers: where the gradient of temperature jumps.
     #[must_use]
     pub fn layer_bases(&self) -> Vec<f64> {
-        let r = self.constants.earth_radius;
-        self.layers.iter().map(|(layer, _)| r * layer.geopotential_base / (r - layer.geopotential_base)).collect()
+        self.layers.iter().map(|(layer, _)| self.geometric(layer.geopotential_base)).collect()
     }
 
     /// Air at the geometric altitude z in m, from 0 to 120 km.

@@ -4,7 +4,7 @@
 #[derive(Debug, thiserror::Error)]
 #[error("{}", self.describe())]
 pub struct RawError {
-    /// Path below `raw-data/`, with forward slashes.
+    /// Path below `raw-data/`, with forward slashes; of an own input the name of the file alone.
     pub file: String,
     /// Line, counted from 1, where the fault belongs to one.
     pub line: Option<u64>,
@@ -91,6 +91,26 @@ pub enum Fault {
         previous: String,
         /// The key.
         found: String,
+    },
+    /// A column that the reader of an own input does not understand.
+    #[error("expected one of {understood}, or that it is left out (--ignore){hint}")]
+    UnknownColumn {
+        /// Names that are understood.
+        understood: String,
+        /// What was probably meant, after a semicolon; or nothing.
+        hint: String,
+    },
+    /// A row of an own input that does not go on from the one before.
+    #[error("expected {wanted} than in line {line}, found {found}: {remedy}")]
+    OutOfOrder {
+        /// `more` or `less`.
+        wanted: &'static str,
+        /// Line of the row before.
+        line: u64,
+        /// The field.
+        found: String,
+        /// What to do.
+        remedy: &'static str,
     },
     /// No row after the header row, or no header row.
     #[error("expected at least one row, found none")]

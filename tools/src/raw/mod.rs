@@ -21,7 +21,8 @@ pub mod sun;
 pub mod us_standard_atmosphere;
 
 pub use error::{Fault, RawError};
-pub use source::{Column, Row, Source};
+pub(crate) use source::Header;
+pub use source::{Column, Row, Source, sha256};
 
 use std::path::Path;
 

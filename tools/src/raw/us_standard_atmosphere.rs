@@ -147,7 +147,8 @@ impl Row for Level {
 }
 
 /// As [`Level`], without the geopotential altitude, which stops to matter above 86 km.
-struct ExtensionLevel(Level);
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExtensionLevel(pub Level);
 
 impl Row for ExtensionLevel {
     type Record = (f64, f64, f64, f64, f64);

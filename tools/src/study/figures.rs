@@ -6,6 +6,7 @@ use crate::plot::colours::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMIL
 use crate::plot::model::{Axis, Colour, Curve, Figure, Key, Panel, Stroke};
 use polars::prelude::PolarsError;
 use tables::units::KM;
+use tables::views::{Biome, REFERENCE_WAVELENGTH_NM};
 
 /// The figure of a part of a study, from what [`super::make`] gave.
 ///
@@ -59,8 +60,8 @@ fn rayleigh(frame: &Frame) -> Result<Figure, PolarsError> {
             Curve::new("table 2", BLACK, printed(("table_2_relative", percent))?).stroke(Stroke::Marks),
         ],
     );
-    let title = "Rayleigh scattering by a molecule of air: Bucholtz' formula, table and fit".into();
-    Ok(Figure { title, rows: vec![vec![values, differences.share(1.2)]] })
+    let title = "Rayleigh scattering by a molecule of air: Bucholtz' formula, table and fit";
+    Ok(Figure::new(title, vec![vec![values, differences.share(1.2)]]))
 }
 
 fn interpolation(frame: &Frame) -> Result<Figure, PolarsError> {
@@ -90,8 +91,8 @@ fn interpolation(frame: &Frame) -> Result<Figure, PolarsError> {
     )
     .titled("Rayleigh cross-section")
     .key(Key::None);
-    let title = "Error of interpolation half-way between the nodes of the tables".into();
-    Ok(Figure { title, rows: vec![vec![air.share(1.2), ozone, rayleigh]] })
+    let title = "Error of interpolation half-way between the nodes of the tables";
+    Ok(Figure::new(title, vec![vec![air.share(1.2), ozone, rayleigh]]))
 }
 
 fn thesis(frame: &Frame) -> Result<Figure, PolarsError> {
@@ -105,7 +106,7 @@ fn thesis(frame: &Frame) -> Result<Figure, PolarsError> {
     };
     let profiles = Panel::new(
         Axis::logarithmic("ozone, April / 10¹⁸ m⁻³", 1e-2, 1e3, 1),
-        Axis::linear("altitude / km", 0.0, 70.0, 10.0),
+        Axis::linear("altitude / km", 0.0, 100.0, 20.0),
         vec![
             density("climatology, 45° N", "ozone_climatology_m3", BLUE)?,
             layers("Arosa, six layers", "ozone_layers_m3", ORANGE)?,
@@ -129,8 +130,33 @@ fn thesis(frame: &Frame) -> Result<Figure, PolarsError> {
         ],
     )
     .key(Key::None);
-    let title = "What the thesis' code had, beside what the tables are made from".into();
-    Ok(Figure { title, rows: vec![vec![profiles, sections.share(1.2), air.share(0.9)]] })
+    let title = "What the thesis' code had, beside what the tables are made from";
+    let upper = vec![profiles, sections.share(1.2), air.share(0.9)];
+    Ok(Figure::new(title, vec![upper, vec![extinctions(frame)?]]))
+}
+
+/// Extinction at the ground of each biome at 550 nm.
+fn extinctions(frame: &Frame) -> Result<Panel, PolarsError> {
+    let nm = frame.column("aerosol_wavelength_nm")?;
+    let mut curves = Vec::new();
+    for (name, source, colour) in
+        [("OPAC", "opac", BLUE), ("Jaenicke", "jaenicke", ORANGE), ("thesis' code", "thesis", BLACK)]
+    {
+        let mut points = Vec::new();
+        for (i, biome) in (1..).zip(Biome::ALL) {
+            let values = frame.column(&format!("{biome}_{source}_per_m"))?;
+            let green = nm.iter().zip(values).find(|(w, _)| **w == REFERENCE_WAVELENGTH_NM);
+            points.extend(green.map(|(_, value)| (value * KM, f64::from(-i))));
+        }
+        curves.push(Curve::new(name, colour, points).stroke(Stroke::Marks));
+    }
+    let names = (1..).zip(Biome::ALL).map(|(i, biome)| (f64::from(-i), biome.name().to_owned())).collect();
+    Ok(Panel::new(
+        Axis::logarithmic("extinction at the ground, 550 nm / km⁻¹", 1e-3, 1e4, 1),
+        Axis::linear("", -9.5, -0.5, 1.0).named(names),
+        curves,
+    )
+    .key(Key::Beside))
 }
 
 /// Speed against error: each peer with a mark of its own, the variants alike, and the front.
@@ -160,5 +186,5 @@ fn mie_speed(part: &Part) -> Result<Figure, PolarsError> {
         "spheres" => "Mie solvers: 1000 spheres, x from 0.01 to 1000, m = 1.5 + 0.01i",
         _ => "Mie solvers: two size distributions, 61 wavelengths, 181 angles",
     };
-    Ok(Figure { title: what.into(), rows: vec![vec![panel.key(Key::Beside)]] })
+    Ok(Figure::new(what, vec![vec![panel.key(Key::Beside)]]))
 }

@@ -1,6 +1,6 @@
 //! What interpolation misses half-way between the nodes of the tables.
 
-use super::{StudyError, ragged};
+use super::StudyError;
 use crate::build;
 use crate::frame::Frame;
 use crate::molecular::rayleigh::Rayleigh;
@@ -38,7 +38,7 @@ pub(super) fn at_half_nodes(raw_dir: &Path) -> Result<Frame, StudyError> {
     let formula = Rayleigh::new(&raw.bucholtz, raw.atmosphere.values.standard_number_density)?;
     let rayleigh_error = errors(&rayleigh, |w| formula.cross_section(w))?;
 
-    Ok(ragged(vec![
+    Ok(Frame::ragged(vec![
         ("altitude_m", heights),
         ("temperature_relative", temperature),
         ("pressure_relative", pressure),

@@ -1,6 +1,7 @@
 //! Studies: how far numbers that should agree do not.
 //!
-//! A study computes from `raw-data/` or from reference values that the program carries, and in memory; nothing else in
+//! A study computes from `raw-data/` or from reference values that the program carries, and where it compares with what
+//! was made of them, from the tables; but for the figures, which draw what [`thesis`] had beside the tables, nothing in
 //! Airlight uses what it finds. The figures of a study (with the feature `plot`) are drawn from its numbers.
 
 #[cfg(feature = "plot")]
@@ -9,11 +10,12 @@ mod interpolation;
 mod mie_speed;
 mod mie_stability;
 mod rayleigh;
-mod thesis;
+pub mod thesis;
 
 #[cfg(feature = "plot")]
 pub use figures::figure;
 
+use crate::data::Data;
 use crate::frame::Frame;
 use crate::mie::MieError;
 use crate::raw::RawError;
@@ -65,7 +67,7 @@ pub enum Name {
     Rayleigh,
     /// What interpolation between the nodes of the tables misses.
     Interpolation,
-    /// Ozone and air of the thesis' code against those of the tables.
+    /// Ozone, air and aerosols of the thesis' code against those of the tables.
     Thesis,
     /// Classical algorithms and limits of Mie scattering against arbitrary precision.
     MieStability,
@@ -115,16 +117,16 @@ impl From<Frame> for Results {
     }
 }
 
-/// Computes a study from the raw data. Columns that belong to another abscissa than the first stand
-/// beside it with gaps at the end.
+/// Computes a study from the raw data and the tables made from them. Columns that belong to another abscissa than the
+/// first stand beside it with gaps at the end.
 ///
 /// # Errors
 /// [`StudyError`].
-pub fn make(name: Name, raw_dir: &Path) -> Result<Results, StudyError> {
+pub fn make(name: Name, raw_dir: &Path, data: Data<'_>) -> Result<Results, StudyError> {
     match name {
         Name::Rayleigh => rayleigh::compare(raw_dir).map(Results::from),
         Name::Interpolation => interpolation::at_half_nodes(raw_dir).map(Results::from),
-        Name::Thesis => thesis::compare(raw_dir).map(Results::from),
+        Name::Thesis => thesis::compare(raw_dir, data).map(Results::from),
         Name::MieStability => mie_stability::compare(),
         Name::MieSpeed => mie_speed::measure(raw_dir),
     }
@@ -161,13 +163,4 @@ fn write_part(_: Name, part: &Part, stem: &str, folder: &Path) -> Result<Vec<Pat
     let path = folder.join(format!("{stem}.csv"));
     tables::file::replace(&path, &part.frame.csv()?).map_err(failed(&path))?;
     Ok(vec![path])
-}
-
-/// A frame of columns of different lengths: the shorter end in gaps.
-fn ragged(columns: Vec<(&str, Vec<f64>)>) -> Result<Frame, PolarsError> {
-    let longest = columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
-    Frame::new(columns.into_iter().map(|(name, mut values)| {
-        values.resize(longest, f64::NAN);
-        (name, values)
-    }))
 }

@@ -48,7 +48,7 @@ pub(in crate::study) fn figure(part: &Part) -> Result<Figure, PolarsError> {
             cells.infinite = Some("no number".into());
         }
     }
-    Ok(Figure { title: format!("{}: relative error against arbitrary precision", group.title), rows })
+    Ok(Figure::new(format!("{}: relative error against arbitrary precision", group.title), rows))
 }
 
 /// What a panel shows, and its title.
@@ -178,5 +178,5 @@ fn large(frame: &Frame) -> Result<Figure, PolarsError> {
     };
     let row = |a, b| Ok::<_, PolarsError>(vec![panel(a)?, panel(b)?]);
     let rows = vec![row(Quantity::Extinction, Quantity::Asymmetry)?, row(Quantity::Forward, Quantity::Backward)?];
-    Ok(Figure { title: "45 spheres up to x = 10⁶: what angular functions and sums lose".into(), rows })
+    Ok(Figure::new("45 spheres up to x = 10⁶: what angular functions and sums lose", rows))
 }

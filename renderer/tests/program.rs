@@ -1,0 +1,38 @@
+//! The program from outside: what it does when nobody takes what it says.
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+/// One sample of a small picture, whose numbers go to `out`.
+fn sample(out: Stdio, err: Stdio) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_airlight"))
+        .args(["render", "--width", "8", "--height", "8", "--pixel", "4,4", "-o"])
+        .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("sky.exr"))
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
+        .stdout(out)
+        .stderr(err)
+        .output()
+        .expect("the program starts")
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_standard_output_is_one_sentence() {
+    let full = || std::fs::File::options().write(true).open("/dev/full").expect("a device");
+    let output = sample(full().into(), Stdio::piped());
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{words}");
+    assert_eq!(words, "airlight: standard output: cannot be written: No space left on device (os error 28)\n");
+    // Where standard error is full too, the exit code is all there is.
+    assert_eq!(sample(full().into(), full().into()).status.code(), Some(1));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_that_has_seen_enough_is_no_error() {
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    let output = sample(writer.into(), Stdio::piped());
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && words.is_empty(), "{words}");
+}

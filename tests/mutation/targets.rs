@@ -1,0 +1,174 @@
+//! The readers, each with sound inputs to start from.
+
+use super::Form;
+use crate::root;
+use renderer::film::exr;
+use renderer::scene::Scene;
+use std::path::Path;
+use tables::{Table, TableError, file, views};
+use tools::own;
+use tools::raw::{self, Source};
+
+/// A reader.
+pub struct Target {
+    /// Its name in reports and on the command line.
+    pub name: String,
+    /// How its inputs are changed.
+    pub form: Form,
+    /// Whether the program has the whole file in memory all the time: then that counts too.
+    pub held: bool,
+    /// Sound inputs.
+    pub seeds: Vec<Vec<u8>>,
+    /// Reads an input as the program does, and gives the sentence of a refusal.
+    pub read: fn(&[u8]) -> Result<(), String>,
+}
+
+/// Every reader of files that users may change.
+///
+/// # Panics
+/// If a file of the project that serves as a seed is not there.
+#[must_use]
+pub fn targets() -> Vec<Target> {
+    let mut list = Vec::new();
+    let file = |path: &str| std::fs::read(root().join(path)).expect("a file of the project");
+    let mut add = |name: &str, form, held, seeds, read| {
+        list.push(Target { name: name.into(), form, held, seeds, read });
+    };
+    macro_rules! view {
+        ($view:ident: $($seed:literal),+) => {
+            add(
+                concat!("table ", stringify!($view)), Form::Table, false,
+                vec![$(file(concat!("data/", $seed, ".table"))),+],
+                |bytes| table(bytes, views::$view::from_table),
+            );
+        };
+    }
+    view!(StandardAtmosphere: "standard-atmosphere");
+    view!(Rayleigh: "rayleigh");
+    view!(OzoneCrossSection: "ozone-cross-section");
+    view!(OzoneProfiles: "ozone-profiles");
+    view!(OzoneLayers: "ozone-layers");
+    view!(Sun: "sun");
+    view!(Observer: "observer");
+    view!(GroundAlbedo: "ground-albedo");
+    view!(Aerosol: "aerosol-jaenicke-urban", "aerosol-jaenicke-polar-arctic", "aerosol-opac-background");
+    add("table inspect", Form::Table, false, vec![file("data/ozone-layers.table"), file("data/sun.table")], |bytes| {
+        table(bytes, |table| Ok(tools::inspect::describe(table)))
+    });
+    macro_rules! source {
+        ($($path:literal: $module:ident::$row:ident),+ $(,)?) => {$(
+            add(
+                concat!("raw ", $path), Form::Text, true, vec![file(concat!("raw-data/", $path, ".csv"))],
+                |bytes| Source::<raw::$module::$row>::parse("input.csv", bytes).map(drop).map_err(|e| e.to_string()),
+            );
+        )+};
+    }
+    source!(
+        "us-standard-atmosphere-1976/layers": us_standard_atmosphere::Layer,
+        "us-standard-atmosphere-1976/constants": us_standard_atmosphere::ConstantRow,
+        "us-standard-atmosphere-1976/molar-mass": us_standard_atmosphere::MolarMass,
+        "us-standard-atmosphere-1976/profile": us_standard_atmosphere::Level,
+        "us-standard-atmosphere-1976/to-120km": us_standard_atmosphere::ExtensionLevel,
+        "bucholtz-1995/king-factor": bucholtz::KingFactor,
+        "bucholtz-1995/cross-section": bucholtz::CrossSection,
+        "bucholtz-1995/fit": bucholtz::Fit,
+        "ozone-arosa/monthly-column": ozone_arosa::MonthlyColumn,
+        "ozone-arosa/layer-fractions": ozone_arosa::LayerFraction,
+        "ozone-mcpeters-labow/mixing-ratio": ozone_mcpeters_labow::MixingRatio,
+        "ozone-mcpeters-labow/column": ozone_mcpeters_labow::MonthlyColumns,
+        "ozone-serdyuchenko-2014/cross-section": ozone_serdyuchenko::CrossSections,
+        "ozone-thesis/cross-section": ozone_thesis::CrossSection,
+        "sun/spectrum": sun::Irradiance,
+        "sun/limb-darkening": sun::LimbDarkening,
+        "cie-1931/colour-matching": cie_1931::ColourMatching,
+        "ground-albedo/spectra": ground_albedo::Albedo,
+        "aerosol-opac-1998/refractive-index": aerosol_opac::RefractiveIndex,
+        "aerosol-opac-1998/components": aerosol_opac::Component,
+        "aerosol-opac-1998/types": aerosol_opac::TypeShare,
+        "aerosol-opac-1998/layers": aerosol_opac::Layer,
+        "aerosol-opac-1998/optics": aerosol_opac::ComponentOptics,
+        "aerosol-opac-1998/types-at-ground": aerosol_opac::TypeAtGround,
+        "aerosol-jaenicke-1993/modes": aerosol_jaenicke::Mode,
+        "aerosol-gavin-2020/biomes": aerosol_gavin::Biome,
+        "aerosol-gavin-2020/cross-sections": aerosol_gavin::CrossSections,
+        "mie-peers/speed": mie_peers::Speed,
+    );
+    macro_rules! own {
+        ($($name:literal: $path:path, $seed:literal);+ $(;)?) => {$(
+            add(concat!("own ", $name), Form::Text, true, vec![$seed.into()], |bytes| {
+                <$path>::parse("input.csv", bytes, &[]).map(drop).map_err(|e| e.to_string())
+            });
+        )+};
+    }
+    own!(
+        "modes": own::aerosol::Modes, "median_radius_um,sigma_g,number_density_cm3\n0.07,1.7,800\n0.6,2.0,1.5\n";
+        "sizes": own::aerosol::Distribution, "radius_um,dn_dlogr_cm3\n0.05,1200\n0.3,60\n1,2\n5,0.01\n";
+        "index": own::aerosol::Index, "wavelength_nm,n,k\n300,1.50,0.02\n550,1.48,0.01\n1000,1.46,0.015\n";
+        "layer": own::aerosol::Vertical, "altitude_km,relative\n0,1\n1.5,0.8\n3,0.05\n";
+        "albedo": own::albedo::Spectrum, "wavelength_nm,albedo_percent\n350,2\n550,10\n680,4\n800,45\n";
+        "ozone": own::ozone::Sonde, "pressure_hpa,ozone_partial_pressure_mpa,temperature_c\n1005,4.1,14\n30,14.0,-52\n";
+        "sun": own::sun::Spectrum, "wavelength_um,irradiance_w_m2_um\n0.3,500\n0.5,1900\n0.7,1400\n1.0,740\n";
+    );
+    let sounding = "altitude_m,pressure_hpa,temperature_c\n450,963.2,18.4\n1500,852.0,11.0\n5600,508.0,-14.5\n";
+    add("own sounding", Form::Text, true, vec![sounding.into()], |bytes| {
+        own::atmosphere::Sounding::parse("input.csv", bytes, &[], true).map(drop).map_err(|e| e.to_string())
+    });
+    let judged =
+        ["aerosol-gavin-2020/biomes", "bucholtz-1995/king-factor"].map(|name| file(&format!("raw-data/{name}.csv")));
+    add("lint csv", Form::Text, true, judged.into(), |bytes| {
+        let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
+        tools::lint::lint_csv("input.csv", text).map(drop).map_err(|e| e.to_string())
+    });
+    add("lint table", Form::Table, false, vec![file("data/ozone-layers.table"), file("data/sun.table")], |bytes| {
+        table(bytes, |table| Ok(tools::lint::lint_table(table)))
+    });
+    add("inspect csv", Form::Text, true, vec![file("raw-data/bucholtz-1995/king-factor.csv")], |bytes| {
+        tools::inspect::describe_csv("input.csv", bytes).map(drop).map_err(|e| e.to_string())
+    });
+    let spheres = "id,x,m_re,m_im\n1,0.1,1.5,-0.01\n\"a,b\",1e3,1.33,0\n";
+    add("mie cases", Form::Text, true, vec![spheres.into()], mie_cases);
+    let scenes = ["clear-noon", "desert-dusk", "limb"].map(|name| file(&format!("scenes/{name}.json")));
+    let full = Scene { width: Some(8), biome: Some(views::Biome::Urban), aod: Some(0.2), ..Scene::default() }
+        .to_json()
+        .into_bytes();
+    add("scene", Form::Text, true, scenes.into_iter().chain([full.clone()]).collect(), scene);
+    let picture =
+        [b"\x76\x2f\x31\x01\x02\0\0\0compression\0compression\0\x01\0\0\0\x03", b"airlight.scene\0string\0".as_slice()];
+    let length = (full.len() as u32).to_le_bytes();
+    let picture = [picture.concat(), length.to_vec(), full, b"\0and pixels".to_vec()].concat();
+    add("picture", Form::Binary, true, vec![picture], picture_scene);
+    let cases = ["radiances", "renderers"].map(|name| file(&format!("tests/reference/{name}.json")));
+    add("radiance cases", Form::Text, false, cases.into(), |bytes| {
+        renderer::cases::parse(Path::new("input.json"), bytes).map(drop).map_err(|e| e.to_string())
+    });
+    list
+}
+
+/// Decodes a table and makes a view of it, as `renderer::data` does, which gives the file back before the view is made.
+fn table<V>(bytes: &[u8], view: fn(&Table) -> Result<V, TableError>) -> Result<(), String> {
+    let bytes = bytes.to_vec();
+    let table = file::decode(&bytes).map_err(|e| e.to_string())?;
+    drop(bytes);
+    view(&table).map(drop).map_err(|e| e.to_string())
+}
+
+fn text(bytes: &[u8]) -> Result<&str, String> {
+    std::str::from_utf8(bytes).map_err(|e| e.to_string())
+}
+
+fn mie_cases(bytes: &[u8]) -> Result<(), String> {
+    let cases = tools::mie_cases::Cases::new(text(bytes)?).map_err(|e| e.to_string())?;
+    for case in cases {
+        case.map_err(|e| e.to_string())?;
+    }
+    Ok(())
+}
+
+fn scene(bytes: &[u8]) -> Result<(), String> {
+    Scene::from_json(text(bytes)?).and_then(|scene| scene.validate()).map_err(|e| e.to_string())
+}
+
+fn picture_scene(bytes: &[u8]) -> Result<(), String> {
+    let json = exr::text_attribute(bytes, "airlight.scene").map_err(|e| e.to_string())?;
+    scene(json.ok_or("a picture that carries no scene")?.as_bytes())
+}
