@@ -158,6 +158,6 @@ mod tests {
     fn a_radius_out_of_range_is_refused_before_the_work() {
         let input = r#"{"angles_deg": [0.0, 90.0], "dust": {"wavelengths": [0.5], "r": [1e30], "w": [1.0], "m_re": 1.5, "m_im": -0.01}}"#;
         let error = distributions(input, Instructions::best(), 1).expect_err("too large");
-        assert!(error.to_string().starts_with("size parameter 1.25"), "{error}");
+        assert!(error.to_string().starts_with("size parameter 12566370"), "{error}");
     }
 }

@@ -73,7 +73,8 @@ mod tests {
     fn quadrature_is_exact_for_polynomials() {
         for n in [1, 2, 5, 64, 1001] {
             let nodes = gauss_legendre(n);
-            for power in [0, 2, 2 * n as i32 - 2] {
+            // One point integrates no square.
+            for power in [0, 2, 2 * n as i32 - 2].into_iter().filter(|&power| power < 2 * n as i32) {
                 let sum: f64 = nodes.iter().map(|(x, weight)| weight * x.powi(power)).sum();
                 let exact = 2.0 / f64::from(power + 1);
                 // Rounding of n terms.
