@@ -202,7 +202,7 @@ mod tests {
         let expected = "title  a title\n\n3 rows\n  x_nm  300.000 to 320.000 nm\n  name  2 words\n  y     2.00000                2 empty\n";
         assert_eq!(describe_csv("a.csv", text.as_bytes()).expect("a CSV"), expected);
         let error = describe_csv("a.csv", b"# title: a\nx,y\n1,2\n1\n").expect_err("a short row").to_string();
-        assert!(error.starts_with("a.csv: malformed row"), "{error}");
+        assert!(error.starts_with("a.csv, line 4: malformed row"), "{error}");
         assert!(describe_csv("a.csv", b"x,y\n").is_err(), "a file without rows was taken");
     }
 }
