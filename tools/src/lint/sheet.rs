@@ -174,6 +174,7 @@ pub(super) fn parse(name: &str, text: &str) -> Result<(Sheet, Vec<Finding>), She
     let mut records = reader.records();
     let malformed = |e: csv::Error| SheetError::Malformed(e.to_string());
     let header = records.next().ok_or(SheetError::Empty)?.map_err(malformed)?;
+    let header: csv::StringRecord = header.iter().map(excerpt).collect::<Vec<_>>().into();
     if header.iter().all(|name| name.parse::<f64>().is_ok()) {
         return Err(SheetError::NoHeader(header_lines + 1));
     }
