@@ -43,7 +43,7 @@ fn equal_seeds_give_equal_inputs_and_others_do_not() {
 
 #[test]
 fn a_panic_too_much_memory_and_an_endless_error_are_noticed() {
-    let target = |held, read| Target { name: "bad".into(), form: Form::Text, held, seeds: vec![], read };
+    let target = |held, read| Target { name: "bad".into(), form: Form::Text, held, free: 1 << 20, seeds: vec![], read };
     let words = |target: Target, length: usize| probe(&target, &vec![b'x'; length]).expect_err("unnoticed");
     assert!(words(target(true, |_| panic!("at the disco")), 1).contains("panic: at the disco"));
     // 4.5 files and 1 MiB.

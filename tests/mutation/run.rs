@@ -7,9 +7,6 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// Bytes that any reader may take.
-const FREE: usize = 1 << 20;
-
 /// The most bytes of an error.
 const MAX_ERROR: usize = 4096;
 
@@ -108,7 +105,7 @@ pub fn probe(target: &Target, bytes: &[u8]) -> Result<Verdict, String> {
         let text = text.or_else(|| panic.downcast_ref::<&str>().map(|&text| text.into()));
         format!("panic: {}", text.unwrap_or_default())
     })?;
-    let (memory, allowed) = (held + if target.held { bytes.len() } else { 0 }, 4 * bytes.len() + FREE);
+    let (memory, allowed) = (held + if target.held { bytes.len() } else { 0 }, 4 * bytes.len() + target.free);
     if memory > allowed {
         return Err(format!("{memory} bytes of memory for a file of {} bytes, {allowed} are allowed", bytes.len()));
     }

@@ -2,9 +2,11 @@
 
 use crate::export::range;
 use crate::raw::{Fault, Header, RawError};
+use crate::records::Records;
 use crate::text::{aligned, six_digits};
 use std::collections::BTreeSet;
-use tables::{Axis, Field, Table};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use tables::{Axis, Field, Table, excerpt};
 
 /// Title, settings, axes, fields with their ranges, and provenance, as aligned text that ends with
 /// a line end.
@@ -42,29 +44,84 @@ pub fn describe_csv(file: &str, bytes: &[u8]) -> Result<String, RawError> {
     let fail = |fault| RawError::new(file, fault);
     let content = std::str::from_utf8(bytes).map_err(|_| fail(Fault::NotUtf8))?;
     let header = Header::parse(file, content)?;
-    let mut reader = csv::Reader::from_reader(&content.as_bytes()[header.text.len()..]);
-    let malformed = |e: csv::Error| fail(Fault::MalformedRow { found: e.to_string() });
-    let names = reader.headers().map_err(malformed)?.clone();
-    let rows = reader.records().collect::<Result<Vec<_>, _>>().map_err(malformed)?;
-    if rows.is_empty() {
+    let mut records = Records::new(&content[header.text.len()..]);
+    let malformed = |(line, found): (u64, String)| fail(Fault::MalformedRow { found }).at_line(header.lines + line);
+    let mut record = csv::StringRecord::new();
+    if records.read(&mut record).map_err(malformed)?.is_none() {
+        return Err(fail(Fault::NoRows));
+    }
+    let names: Vec<String> = record.iter().map(excerpt).collect();
+    let mut columns = vec![Contents::default(); names.len()];
+    let mut rows = 0;
+    while let Some(line) = records.read(&mut record).map_err(malformed)? {
+        if record.len() != names.len() {
+            let found = format!("{} fields where there are {} columns", record.len(), names.len());
+            return Err(malformed((line, found)));
+        }
+        rows += 1;
+        for (column, cell) in columns.iter_mut().zip(&record) {
+            column.add(cell);
+        }
+    }
+    if rows == 0 {
         return Err(fail(Fault::NoRows));
     }
     let said = header.entries().filter(|(key, _)| !key.starts_with("unit "));
-    let mut text =
-        aligned(&said.map(|(key, value)| vec![(*key).into(), (*value).into()]).collect::<Vec<_>>(), 0, |_| false);
-    let column = |(i, name): (usize, &str)| {
-        let cells: Vec<&str> = rows.iter().filter_map(|row| row.get(i)).filter(|cell| !cell.is_empty()).collect();
-        let numbers: Option<Vec<f64>> = cells.iter().map(|cell| cell.parse().ok()).collect();
+    let said: Vec<_> = said.map(|(key, value)| vec![excerpt(key), excerpt(value)]).collect();
+    let mut text = aligned(&said, 0, |_| false);
+    let column = |(name, contents): (&String, Contents)| {
         let unit = header.find(&format!("unit {name}")).filter(|unit| *unit != "text").unwrap_or("1");
-        let holds = match numbers {
-            Some(numbers) if !numbers.is_empty() => ranged(range(&numbers)) + &suffix(unit),
-            _ => format!("{} words", cells.iter().collect::<BTreeSet<_>>().len()),
-        };
-        let gaps = rows.len() - cells.len();
-        vec![name.into(), holds, if gaps == 0 { String::new() } else { format!("{gaps} empty") }]
+        let empty = if contents.empty == 0 { String::new() } else { format!("{} empty", contents.empty) };
+        vec![name.clone(), contents.described(unit), empty]
     };
-    section(&mut text, &format!("{} rows", rows.len()), names.iter().enumerate().map(column).collect());
+    section(&mut text, &format!("{rows} rows"), names.iter().zip(columns).map(column).collect());
     Ok(text)
+}
+
+/// What the cells of a column are.
+#[derive(Clone)]
+struct Contents {
+    empty: usize,
+    /// Lowest and highest number.
+    range: (f64, f64),
+    /// Cells that are no numbers, and up to [`MOST_WORDS`] different ones of all, by their hashes.
+    words: usize,
+    different: BTreeSet<u64>,
+}
+
+/// The most different words that are counted.
+const MOST_WORDS: usize = 1000;
+
+impl Default for Contents {
+    fn default() -> Self {
+        Self { empty: 0, range: (f64::INFINITY, f64::NEG_INFINITY), words: 0, different: BTreeSet::new() }
+    }
+}
+
+impl Contents {
+    fn add(&mut self, cell: &str) {
+        if cell.is_empty() {
+            self.empty += 1;
+            return;
+        }
+        match cell.parse::<f64>() {
+            Ok(number) => self.range = (self.range.0.min(number), self.range.1.max(number)),
+            Err(_) => self.words += 1,
+        }
+        if self.different.len() <= MOST_WORDS {
+            let mut hasher = DefaultHasher::new();
+            cell.hash(&mut hasher);
+            self.different.insert(hasher.finish());
+        }
+    }
+
+    fn described(&self, unit: &str) -> String {
+        if self.words == 0 && self.range.0 <= self.range.1 {
+            return ranged(self.range) + &suffix(&excerpt(unit));
+        }
+        let count = self.different.len();
+        if count > MOST_WORDS { format!("more than {MOST_WORDS} words") } else { format!("{count} words") }
+    }
 }
 
 /// A heading and rows in aligned columns; nothing if there are no rows.
@@ -145,7 +202,7 @@ mod tests {
         let expected = "title  a title\n\n3 rows\n  x_nm  300.000 to 320.000 nm\n  name  2 words\n  y     2.00000                2 empty\n";
         assert_eq!(describe_csv("a.csv", text.as_bytes()).expect("a CSV"), expected);
         let error = describe_csv("a.csv", b"# title: a\nx,y\n1,2\n1\n").expect_err("a short row").to_string();
-        assert!(error.starts_with("a.csv: malformed row"), "{error}");
+        assert!(error.starts_with("a.csv, line 4: malformed row"), "{error}");
         assert!(describe_csv("a.csv", b"x,y\n").is_err(), "a file without rows was taken");
     }
 }

@@ -17,12 +17,17 @@ pub fn shortest(x: f64) -> String {
     if x == 0.0 || (1e-4..1e15).contains(&x.abs()) { format!("{x}") } else { format!("{x:e}") }
 }
 
+/// The widest column that is aligned; longer cells stick out.
+const WIDEST: usize = 2000;
+
 /// Rows in columns two spaces apart, each line after `indent` spaces. Cells are flush left, in the columns for which
 /// `right` holds flush right.
 #[must_use]
 pub fn aligned(rows: &[Vec<String>], indent: usize, right: impl Fn(usize) -> bool) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |i: usize| rows.iter().filter_map(|row| row.get(i)).map(|cell| cell.chars().count()).max().unwrap_or(0);
+    let width = |i: usize| {
+        rows.iter().filter_map(|row| row.get(i)).map(|cell| cell.chars().count()).max().unwrap_or(0).min(WIDEST)
+    };
     let widths: Vec<usize> = (0..columns).map(width).collect();
     let mut text = String::new();
     for row in rows {

@@ -13,6 +13,7 @@ mod finding;
 mod known;
 mod limits;
 mod names;
+mod pieces;
 mod repair;
 mod sheet;
 mod smooth;
@@ -21,6 +22,7 @@ mod table;
 pub use finding::{Check, Finding, Severity};
 pub use sheet::SheetError;
 
+use pieces::Pieces;
 use repair::{Judged, explain};
 use sheet::{Sheet, coordinate};
 use std::path::{Path, PathBuf};
@@ -119,12 +121,22 @@ pub fn lint_table(table: &Table) -> Vec<Finding> {
 /// # Errors
 /// [`SheetError`] if it has no header row or no rows.
 pub fn lint_csv(about: &str, text: &str) -> Result<Vec<Finding>, SheetError> {
-    let (sheet, mut findings) = sheet::parse(about, text)?;
-    let mut laws = sheet.laws();
-    explain(&sheet, &mut laws);
-    findings.extend(laws);
-    findings.extend(smooth::laws(&sheet));
-    Ok(finish(findings))
+    let mut findings: Vec<Finding> = Vec::new();
+    for piece in Pieces::new(text) {
+        let (sheet, mut found) = sheet::parse(about, &piece.text)?;
+        let mut laws = sheet.laws();
+        explain(&sheet, &mut laws);
+        found.extend(laws);
+        found.extend(smooth::laws(&sheet));
+        for finding in &mut found {
+            finding.line = finding.line.map(|line| piece.line(line));
+        }
+        // What is said of the header, or of the rows that two pieces share, is said once.
+        found.retain(|finding| !findings.contains(finding));
+        findings.extend(found);
+        findings = finish(findings);
+    }
+    Ok(findings)
 }
 
 impl Judged for Sheet {

@@ -2,7 +2,9 @@
 
 use super::finding::{Check, Finding};
 use super::names::{Dimension, Meaning, Quantity, biome, meaning, unit, unit_in_name};
+use crate::records::MAX_FIELDS;
 use std::ops::Range;
+use tables::excerpt;
 use tables::views::Biome;
 
 /// One column.
@@ -125,6 +127,10 @@ pub(super) fn round(x: f64) -> String {
     }
 }
 
+/// The most rows of another length than the header row before a text is no sheet, and the most places without a number
+/// that are counted in a column of a piece.
+const MOST_MISFITS: usize = 100;
+
 /// Why a text is no sheet.
 #[derive(Debug, thiserror::Error)]
 pub enum SheetError {
@@ -152,7 +158,7 @@ pub(super) fn parse(name: &str, text: &str) -> Result<(Sheet, Vec<Finding>), She
         let Some((key, value)) = line[1..].split_once(':') else { continue };
         match key.trim().strip_prefix("unit ") {
             Some(column) => units.push((column.trim().to_owned(), value.trim().to_owned())),
-            None if key.trim() == "title" => about += &value.to_lowercase(),
+            None if key.trim() == "title" => about += &excerpt(value).to_lowercase(),
             None => {}
         }
     }
@@ -168,16 +174,25 @@ pub(super) fn parse(name: &str, text: &str) -> Result<(Sheet, Vec<Finding>), She
     let mut records = reader.records();
     let malformed = |e: csv::Error| SheetError::Malformed(e.to_string());
     let header = records.next().ok_or(SheetError::Empty)?.map_err(malformed)?;
+    let header: csv::StringRecord = header.iter().map(excerpt).collect::<Vec<_>>().into();
     if header.iter().all(|name| name.parse::<f64>().is_ok()) {
         return Err(SheetError::NoHeader(header_lines + 1));
     }
-    let mut findings = Vec::new();
+    if header.len() > MAX_FIELDS {
+        return Err(SheetError::Malformed(format!("a header row of more than {MAX_FIELDS} fields")));
+    }
+    let (mut findings, mut misfits) = (Vec::new(), 0);
     let mut fields: Vec<Vec<String>> = vec![Vec::new(); header.len()];
     let mut lines = Vec::new();
     for record in records {
         let record = record.map_err(malformed)?;
         let line = header_lines + record.position().map_or(0, csv::Position::line);
         if record.len() != header.len() {
+            misfits += 1;
+            if misfits > MOST_MISFITS {
+                let why = format!("more than {MOST_MISFITS} rows whose fields are not those of the header row");
+                return Err(SheetError::Malformed(why));
+            }
             let found = format!("{} fields", record.len());
             let expected = format!("{} as in the header row", header.len());
             findings.push(Finding::new(Check::Columns, &[], found, expected).at(Some(line), String::new()));
@@ -185,7 +200,7 @@ pub(super) fn parse(name: &str, text: &str) -> Result<(Sheet, Vec<Finding>), She
         }
         lines.push(line);
         for (column, field) in fields.iter_mut().zip(&record) {
-            column.push(field.to_owned());
+            column.push(excerpt(field));
         }
     }
     if lines.is_empty() {
@@ -227,8 +242,11 @@ fn column(name: &str, mut meaning: Meaning, fields: Vec<String>, lines: &[u64], 
         return Column { name: name.into(), meaning, values: vec![f64::NAN; fields.len()], texts: fields };
     }
     let mut values = Vec::with_capacity(fields.len());
+    let mut misfits = 0;
     for ((field, number), &line) in fields.iter().zip(numbers).zip(lines) {
-        if !field.is_empty() && !number.is_some_and(f64::is_finite) {
+        let fits = field.is_empty() || number.is_some_and(f64::is_finite);
+        misfits += usize::from(!fits);
+        if !fits && misfits <= MOST_MISFITS {
             let found = format!("{field:?}");
             findings
                 .push(Finding::new(Check::Missing, &[name], found, "a finite number").at(Some(line), String::new()));

@@ -137,7 +137,7 @@ pub(crate) struct Header<'a> {
     /// All of them, line ends included.
     pub(crate) text: &'a str,
     /// Number of lines of the header.
-    lines: u64,
+    pub(crate) lines: u64,
 }
 
 impl<'a> Header<'a> {
