@@ -5,10 +5,11 @@ use super::print;
 use super::say;
 use clap::Args;
 use std::path::PathBuf;
+use tools::data::Data;
+#[cfg(feature = "plot")]
+use tools::plot;
 #[cfg(feature = "study")]
 use tools::study;
-#[cfg(feature = "plot")]
-use tools::{data::Data, plot};
 
 /// What to draw, from which tables, to where.
 #[cfg(feature = "plot")]
@@ -65,6 +66,9 @@ pub(super) struct StudyArgs {
     /// Folder of the measured inputs
     #[arg(long, value_name = "DIR", default_value = "raw-data")]
     raw_data: PathBuf,
+    /// Folder of the tables, for the study of fitted phase functions
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    data: PathBuf,
     /// Folder of the results; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "plots")]
     out: PathBuf,
@@ -86,7 +90,7 @@ fn study_names() -> clap::builder::PossibleValuesParser {
 pub(super) fn study(args: &StudyArgs) -> Result<(), String> {
     let wanted = |name: &study::Name| args.studies.is_empty() || args.studies.iter().any(|s| s == name.as_str());
     for name in study::Name::ALL.into_iter().filter(wanted) {
-        let results = study::make(name, &args.raw_data).map_err(|e| e.to_string())?;
+        let results = study::make(name, &args.raw_data, Data(&args.data)).map_err(|e| e.to_string())?;
         let paths = study::write(name, &results, &args.out).map_err(|e| e.to_string())?;
         if !args.quiet {
             for remark in &results.remarks {

@@ -1,18 +1,21 @@
 //! Studies: how far numbers that should agree do not.
 //!
-//! A study computes from `raw-data/` or from reference values that the program carries, and in memory; nothing else in
-//! Airlight uses what it finds. The figures of a study (with the feature `plot`) are drawn from its numbers.
+//! A study computes from `raw-data/`, from the written tables, or from reference values that the program carries, and in
+//! memory; nothing else in Airlight uses what it finds. The figures of a study (with the feature `plot`) are drawn from its numbers.
 
 #[cfg(feature = "plot")]
 mod figures;
 mod interpolation;
+mod large_spheres;
 mod mie_stability;
+mod phase_fits;
 mod rayleigh;
 mod thesis;
 
 #[cfg(feature = "plot")]
 pub use figures::figure;
 
+use crate::data::Data;
 use crate::frame::Frame;
 use crate::mie::MieError;
 use crate::raw::RawError;
@@ -68,11 +71,16 @@ pub enum Name {
     Thesis,
     /// Classical algorithms and limits of Mie scattering against arbitrary precision.
     MieStability,
+    /// Clouds and drops of water: rings and rainbows beside the theories of them.
+    LargeSpheres,
+    /// Henyey-Greenstein functions fitted to the phase functions of the biomes.
+    PhaseFits,
 }
 
 impl Name {
     /// Every study.
-    pub const ALL: [Self; 4] = [Self::Rayleigh, Self::Interpolation, Self::Thesis, Self::MieStability];
+    pub const ALL: [Self; 6] =
+        [Self::Rayleigh, Self::Interpolation, Self::Thesis, Self::MieStability, Self::LargeSpheres, Self::PhaseFits];
 
     /// The name by which it is asked for; its files are called `study-NAME`.
     #[must_use]
@@ -82,6 +90,8 @@ impl Name {
             Self::Interpolation => "interpolation",
             Self::Thesis => "thesis",
             Self::MieStability => "mie-stability",
+            Self::LargeSpheres => "large-spheres",
+            Self::PhaseFits => "phase-fits",
         }
     }
 }
@@ -111,17 +121,19 @@ impl From<Frame> for Results {
     }
 }
 
-/// Computes a study from the raw data. Columns that belong to another abscissa than the first stand
+/// Computes a study from the raw data, or from the tables of `data` where it is about them. Columns that belong to another abscissa than the first stand
 /// beside it with gaps at the end.
 ///
 /// # Errors
 /// [`StudyError`].
-pub fn make(name: Name, raw_dir: &Path) -> Result<Results, StudyError> {
+pub fn make(name: Name, raw_dir: &Path, data: Data<'_>) -> Result<Results, StudyError> {
     match name {
         Name::Rayleigh => rayleigh::compare(raw_dir).map(Results::from),
         Name::Interpolation => interpolation::at_half_nodes(raw_dir).map(Results::from),
         Name::Thesis => thesis::compare(raw_dir).map(Results::from),
         Name::MieStability => mie_stability::compare(),
+        Name::LargeSpheres => large_spheres::compare(raw_dir),
+        Name::PhaseFits => phase_fits::compare(data),
     }
 }
 
