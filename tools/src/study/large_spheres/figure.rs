@@ -86,7 +86,7 @@ fn drops(frame: &Frame) -> Result<Figure, PolarsError> {
     let above = whole(curves(frame, DROPS, "", Stroke::Solid)?);
     let below = vec![
         panel("secondary bow", 2.0, (123.0, 131.0), Axis::linear(PHASE, 0.0, 0.016, 0.004))?.key(Key::TopLeft),
-        panel("primary bow", 1.0, (136.0, 142.0), Axis::linear("", 0.0, 0.12, 0.02))?,
+        panel("primary bow", 1.0, (136.0, 142.0), Axis::linear("", 0.0, 0.14, 0.02))?,
     ];
     let title = "Drops of water of 0.5 mm (diameter), standard deviation 1 %".into();
     Ok(Figure { title, rows: vec![vec![above], below] })

@@ -13,7 +13,7 @@ mod tests;
 pub(super) use figure::figure;
 
 use super::{Part, Results, StudyError};
-use crate::aerosol::fit::{Errors, Fit, Form, Observed};
+use crate::aerosol::fit::{Errors, Fit, Form, Observed, WORST_FROM_DEG};
 use crate::column::{Column, Place};
 use crate::data::Data;
 use crate::frame::Frame;
@@ -204,6 +204,28 @@ fn remark(source: AerosolSource, case: &Case) -> Option<String> {
     ))
 }
 
+/// A form over all biomes and wavelengths, in words.
+fn summary(source: AerosolSource, cases: &[Case], stand: Stand) -> String {
+    let found: Vec<&(Fit, Errors, SkyError)> = cases.iter().filter_map(|case| case.cost(stand)).collect();
+    let mean_and_largest = |value: fn(&(Fit, Errors, SkyError)) -> f64| {
+        let values = || found.iter().map(|cost| 100.0 * value(cost).abs());
+        let mean = values().sum::<f64>() / found.len().max(1) as f64;
+        format!("{mean:.1} ({:.0})", values().fold(0.0, f64::max))
+    };
+    format!(
+        "{source} {:<13} in {:>3} of {} cases, mean (largest) in %: rms of ln {}, misplaced {}, backward {}, worst from \
+         {WORST_FROM_DEG}° {}, sky rms {}",
+        stand.key(),
+        found.len(),
+        cases.len(),
+        mean_and_largest(|(_, errors, _)| errors.logarithmic),
+        mean_and_largest(|(_, errors, _)| errors.misplaced),
+        mean_and_largest(|(_, errors, _)| errors.backward),
+        mean_and_largest(|(_, errors, _)| errors.worst),
+        mean_and_largest(|(.., sky)| sky.rms),
+    )
+}
+
 /// Fits of every biome, source and wavelength, and what they cost.
 pub(super) fn compare(data: Data<'_>) -> Result<Results, StudyError> {
     let (mut parts, mut remarks) = (Vec::new(), Vec::new());
@@ -212,6 +234,7 @@ pub(super) fn compare(data: Data<'_>) -> Result<Results, StudyError> {
         let (all, reference): (Vec<&Case>, Vec<&Case>) =
             (cases.iter().collect(), cases.iter().filter(|case| is_reference(case)).collect());
         remarks.extend(reference.iter().filter_map(|case| remark(source, case)));
+        remarks.extend(Stand::ALL.into_iter().map(|stand| summary(source, &cases, stand)));
         parts.push(Part { name: FITS[i], frame: fits(&all)? });
         parts.push(Part { name: FUNCTIONS[i], frame: functions(&reference)? });
         parts.push(Part { name: COSTS[i], frame: fits(&reference)? });
