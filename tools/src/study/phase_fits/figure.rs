@@ -106,7 +106,12 @@ fn errors(frame: &Frame, source: &str) -> Result<Figure, PolarsError> {
     let curves = |biome: Biome| -> Result<Vec<Curve>, PolarsError> {
         let one = |stand: Stand| -> Result<Curve, PolarsError> {
             let points = chosen(frame, biome, stand)?.into_iter().map(|i| (nm[i], values[i])).collect();
-            let stroke = if stand == Stand::Thesis { Stroke::Dotted } else { Stroke::Solid };
+            // Dashes let a curve be seen on which another nearly lies.
+            let stroke = match stand {
+                Stand::Thesis => Stroke::Dotted,
+                Stand::Fitted(Form::FittedSingle | Form::FreeDouble) => Stroke::Dashed,
+                Stand::Fitted(_) => Stroke::Solid,
+            };
             Ok(Curve::new(stand.words(), stand.colour(), points).stroke(stroke))
         };
         Stand::ALL.into_iter().map(one).collect()

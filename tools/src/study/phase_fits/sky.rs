@@ -93,6 +93,6 @@ impl Sky {
                 squares += error * error;
             }
         }
-        SkyError { rms: (squares / count as f64).sqrt(), mean: sum / count }
+        SkyError { rms: (squares / count).sqrt(), mean: sum / count }
     }
 }
