@@ -24,22 +24,16 @@ impl Frame {
         Ok(Self(DataFrame::new_infer_height(columns.collect())?))
     }
 
-    /// The same frame with a column of texts in front.
+    /// The same frame with columns of texts before the others.
     ///
     /// # Errors
-    /// [`PolarsError`] if the length differs or the name is taken.
-    pub fn named(self, name: &str, texts: Vec<String>) -> Result<Self, PolarsError> {
-        let mut columns = vec![Column::new(name.into(), texts)];
-        columns.extend(self.0.columns().iter().cloned());
-        Ok(Self(DataFrame::new_infer_height(columns)?))
-    }
-
-    /// The texts of a column.
-    ///
-    /// # Errors
-    /// [`PolarsError`] if there is no such column, or it holds numbers.
-    pub fn texts(&self, name: &str) -> Result<Vec<String>, PolarsError> {
-        Ok(self.0.column(name)?.str()?.iter().map(|text| text.unwrap_or_default().to_owned()).collect())
+    /// As [`Frame::new`].
+    pub fn labelled<N: Into<String>>(
+        self,
+        texts: impl IntoIterator<Item = (N, Vec<String>)>,
+    ) -> Result<Self, PolarsError> {
+        let texts = texts.into_iter().map(|(name, values)| Column::new(name.into().into(), values));
+        Ok(Self(DataFrame::new_infer_height(texts.chain(self.0.columns().iter().cloned()).collect())?))
     }
 
     /// A frame of columns of different lengths: the shorter end in gaps.
@@ -66,6 +60,14 @@ impl Frame {
     /// [`PolarsError`] if there is no such column.
     pub fn column(&self, name: &str) -> Result<Vec<f64>, PolarsError> {
         Ok(self.0.column(name)?.f64()?.iter().map(|value| value.unwrap_or(f64::NAN)).collect())
+    }
+
+    /// The texts of a column.
+    ///
+    /// # Errors
+    /// [`PolarsError`] if there is no such column of texts.
+    pub fn texts(&self, name: &str) -> Result<Vec<String>, PolarsError> {
+        Ok(self.0.column(name)?.str()?.iter().map(|text| text.unwrap_or_default().to_owned()).collect())
     }
 
     /// The frame as CSV: a header row of the names, then the rows; a missing value is empty.
@@ -98,6 +100,15 @@ mod tests {
         let y = frame.column("y_m2").expect("there");
         assert!(y[0].is_nan() && y[1] == 4.5e-31);
         assert!(frame.column("z").is_err());
+    }
+
+    #[test]
+    fn texts_stand_before_numbers() {
+        let frame = Frame::new([("x_m", vec![1.0, 2.5])]).expect("equal");
+        let frame = frame.labelled([("what", vec!["a".to_owned(), "b".to_owned()])]).expect("equal");
+        assert_eq!(frame.csv().expect("written"), b"what,x_m\na,1.0\nb,2.5\n");
+        assert_eq!(frame.texts("what").expect("there"), ["a", "b"]);
+        assert!(frame.texts("x_m").is_err() && frame.column("what").is_err());
     }
 
     #[test]

@@ -4,11 +4,12 @@
 //! [`size`] has the distributions of radii, log-normal or tabulated; [`bulk`] averages single spheres of [`crate::mie`] over it;
 //! [`material`] interpolates refractive indices; [`angles`] has the angles of the tables and the rule of
 //! normalisation; [`recipe`] says what each biome is made of, after each source; [`library`] computes all
-//! particles of some recipes in parallel; [`mixture`] mixes them; [`thesis`] reproduces the numbers
+//! particles of some recipes in parallel; [`mixture`] mixes them; [`fit`] fits phase functions; [`thesis`] reproduces the numbers
 //! of the thesis, wrong as they are, so that each correction is a number.
 
 pub mod angles;
 pub mod bulk;
+pub mod fit;
 pub mod library;
 pub mod material;
 pub mod mixture;

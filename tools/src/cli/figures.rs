@@ -142,7 +142,7 @@ pub(super) struct StudyArgs {
     /// Folder of the measured inputs
     #[arg(long, value_name = "DIR", default_value = "raw-data")]
     raw_data: PathBuf,
-    /// Folder of the tables, for the study that compares with them
+    /// Folder of the tables, for the studies that are about them
     #[arg(long, value_name = "DIR", default_value = "data")]
     data: PathBuf,
     /// Folder of the results; made if it is not there

@@ -19,6 +19,7 @@ pub mod ozone_serdyuchenko;
 pub mod ozone_thesis;
 pub mod sun;
 pub mod us_standard_atmosphere;
+pub mod water;
 
 pub use error::{Fault, RawError};
 pub(crate) use source::Header;

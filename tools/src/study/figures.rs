@@ -1,6 +1,6 @@
 //! Figures of the studies, from their numbers.
 
-use super::{Name, Part, mie_stability};
+use super::{Name, Part, large_spheres, mie_stability, phase_fits};
 use crate::frame::Frame;
 use crate::plot::colours::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION};
 use crate::plot::model::{Axis, Colour, Curve, Figure, Key, Panel, Stroke};
@@ -19,11 +19,17 @@ pub fn figure(name: Name, part: &Part) -> Result<Figure, PolarsError> {
         Name::Thesis => thesis(&part.frame),
         Name::MieStability => mie_stability::figure(part),
         Name::MieSpeed => mie_speed(part),
+        Name::LargeSpheres => large_spheres::figure(part),
+        Name::PhaseFits => phase_fits::figure(part),
     }
 }
 
 /// Points of two columns, each in units of the factor given.
-fn points(frame: &Frame, (x, x_unit): (&str, f64), (y, y_unit): (&str, f64)) -> Result<Vec<(f64, f64)>, PolarsError> {
+pub(super) fn points(
+    frame: &Frame,
+    (x, x_unit): (&str, f64),
+    (y, y_unit): (&str, f64),
+) -> Result<Vec<(f64, f64)>, PolarsError> {
     let (x, y) = (frame.column(x)?, frame.column(y)?);
     Ok(x.into_iter().zip(y).map(|(x, y)| (x / x_unit, y / y_unit)).collect())
 }

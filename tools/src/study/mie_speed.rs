@@ -38,7 +38,7 @@ pub(super) fn measure(raw_dir: &Path) -> Result<Results, StudyError> {
         ])?;
         results
             .parts
-            .push(Part { name: part, frame: frame.named("solver", points.into_iter().map(|p| p.0).collect())? });
+            .push(Part { name: part, frame: frame.labelled([("solver", points.into_iter().map(|p| p.0).collect())])? });
     }
     Ok(results)
 }

@@ -7,8 +7,10 @@
 #[cfg(feature = "plot")]
 mod figures;
 mod interpolation;
+mod large_spheres;
 mod mie_speed;
 mod mie_stability;
+mod phase_fits;
 mod rayleigh;
 pub mod thesis;
 
@@ -73,11 +75,23 @@ pub enum Name {
     MieStability,
     /// Speed against error of Mie solvers.
     MieSpeed,
+    /// Clouds and drops of water: rings and rainbows beside the theories of them.
+    LargeSpheres,
+    /// Henyey-Greenstein functions fitted to the phase functions of the biomes.
+    PhaseFits,
 }
 
 impl Name {
     /// Every study.
-    pub const ALL: [Self; 5] = [Self::Rayleigh, Self::Interpolation, Self::Thesis, Self::MieStability, Self::MieSpeed];
+    pub const ALL: [Self; 7] = [
+        Self::Rayleigh,
+        Self::Interpolation,
+        Self::Thesis,
+        Self::MieStability,
+        Self::MieSpeed,
+        Self::LargeSpheres,
+        Self::PhaseFits,
+    ];
 
     /// The name by which it is asked for; its files are called `study-NAME`.
     #[must_use]
@@ -88,6 +102,8 @@ impl Name {
             Self::Thesis => "thesis",
             Self::MieStability => "mie-stability",
             Self::MieSpeed => "mie-speed",
+            Self::LargeSpheres => "large-spheres",
+            Self::PhaseFits => "phase-fits",
         }
     }
 }
@@ -129,6 +145,8 @@ pub fn make(name: Name, raw_dir: &Path, data: Data<'_>) -> Result<Results, Study
         Name::Thesis => thesis::compare(raw_dir, data).map(Results::from),
         Name::MieStability => mie_stability::compare(),
         Name::MieSpeed => mie_speed::measure(raw_dir),
+        Name::LargeSpheres => large_spheres::compare(raw_dir),
+        Name::PhaseFits => phase_fits::compare(data),
     }
 }
 
