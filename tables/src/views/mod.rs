@@ -11,7 +11,10 @@ mod ground;
 mod light;
 mod ozone;
 
-pub use aerosol::{Aerosol, AerosolSource, Biome, COSINE, Optics, REFERENCE_WAVELENGTH_NM, Species, integral, suffix};
+pub use aerosol::{
+    Aerosol, AerosolSource, Biome, COSINE, MATRIX_COSINE, Matrix, Optics, REFERENCE_WAVELENGTH_NM, Species, integral,
+    suffix,
+};
 pub use air::{Rayleigh, StandardAtmosphere};
 pub use ground::GroundAlbedo;
 pub use light::{Observer, Sun};

@@ -1,8 +1,8 @@
 //! Aerosols: from size distributions and refractive indices to cross-sections and phase functions of
 //! mixtures, and the biomes made of them.
 //!
-//! [`size`] has the log-normal distribution; [`bulk`] averages single spheres of [`crate::mie`] over it;
-//! [`material`] interpolates refractive indices; [`angles`] has the angles of the tables and the rule of
+//! [`size`] has the log-normal distribution; [`bulk`] averages single spheres of [`crate::mie`] over it by the rules of
+//! [`quadrature`]; [`material`] interpolates refractive indices; [`angles`] has the angles of the tables and the rule of
 //! normalisation; [`recipe`] says what each biome is made of, after each source; [`library`] computes all
 //! particles of some recipes in parallel; [`mixture`] mixes them; [`thesis`] reproduces the numbers
 //! of the thesis, wrong as they are, so that each correction is a number.
@@ -12,6 +12,7 @@ pub mod bulk;
 pub mod library;
 pub mod material;
 pub mod mixture;
+pub mod quadrature;
 pub mod recipe;
 pub mod size;
 pub mod thesis;

@@ -127,6 +127,26 @@ impl Part {
     }
 }
 
+/// Every kind of particles that these recipes need at the humidities (percent) that `of` chooses.
+///
+/// # Errors
+/// As [`Part::particles`].
+pub fn particles<'a>(
+    opac: &AerosolOpac,
+    recipes: &'a [Recipe],
+    of: impl Fn(&'a SpeciesRecipe) -> &'a [f64],
+) -> Result<Vec<Particles>, AerosolError> {
+    let mut all = Vec::new();
+    for species in recipes.iter().flat_map(|recipe| &recipe.species) {
+        for &humidity in of(species) {
+            for (part, _) in &species.parts {
+                all.push(part.particles(opac, humidity)?);
+            }
+        }
+    }
+    Ok(all)
+}
+
 impl Profile {
     /// The number density in m^-3 against altitude in m, for a density `at_sea_level`.
     ///

@@ -3,16 +3,19 @@
 //! A study computes from `raw-data/` or from reference values that the program carries, and in memory; nothing else in
 //! Airlight uses what it finds. The figures of a study (with the feature `plot`) are drawn from its numbers.
 
+mod aerosol_tables;
 #[cfg(feature = "plot")]
 mod figures;
 mod interpolation;
 mod mie_stability;
 mod rayleigh;
+mod size_quadrature;
 mod thesis;
 
 #[cfg(feature = "plot")]
 pub use figures::figure;
 
+use crate::aerosol::AerosolError;
 use crate::frame::Frame;
 use crate::mie::MieError;
 use crate::raw::RawError;
@@ -40,6 +43,9 @@ pub enum StudyError {
     /// A sphere cannot be solved.
     #[error(transparent)]
     Mie(#[from] MieError),
+    /// The optics of particles cannot be computed.
+    #[error(transparent)]
+    Aerosol(#[from] AerosolError),
     /// The numbers make no CSV.
     #[error("numbers of a study: {0}")]
     Frame(#[from] PolarsError),
@@ -68,11 +74,22 @@ pub enum Name {
     Thesis,
     /// Classical algorithms and limits of Mie scattering against arbitrary precision.
     MieStability,
+    /// Averages over sizes: error against the number of radii.
+    SizeQuadrature,
+    /// Aerosol tables: error of radiance against size.
+    AerosolTables,
 }
 
 impl Name {
     /// Every study.
-    pub const ALL: [Self; 4] = [Self::Rayleigh, Self::Interpolation, Self::Thesis, Self::MieStability];
+    pub const ALL: [Self; 6] = [
+        Self::Rayleigh,
+        Self::Interpolation,
+        Self::Thesis,
+        Self::MieStability,
+        Self::SizeQuadrature,
+        Self::AerosolTables,
+    ];
 
     /// The name by which it is asked for; its files are called `study-NAME`.
     #[must_use]
@@ -82,6 +99,8 @@ impl Name {
             Self::Interpolation => "interpolation",
             Self::Thesis => "thesis",
             Self::MieStability => "mie-stability",
+            Self::SizeQuadrature => "size-quadrature",
+            Self::AerosolTables => "aerosol-tables",
         }
     }
 }
@@ -122,6 +141,8 @@ pub fn make(name: Name, raw_dir: &Path) -> Result<Results, StudyError> {
         Name::Interpolation => interpolation::at_half_nodes(raw_dir).map(Results::from),
         Name::Thesis => thesis::compare(raw_dir).map(Results::from),
         Name::MieStability => mie_stability::compare(),
+        Name::SizeQuadrature => size_quadrature::compare(raw_dir),
+        Name::AerosolTables => aerosol_tables::compare(raw_dir),
     }
 }
 
