@@ -15,6 +15,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
+use tools::aerosol::bulk::Rule;
 use tools::build::{self, Built, CheckReport, Target};
 
 /// Makes, checks and shows the tables that Airlight's renderer reads.
@@ -67,12 +68,28 @@ struct BuildArgs {
     /// Only the tables whose file name contains this; may be given more than once
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
+    /// Factor on the tolerances of averages over particle sizes, 0.001 to 1000. With 1, cross-sections and g to 1e-6 and phase
+    /// functions to 1e-5 where k >= 0.005, 1e-4 and 1e-2 elsewhere; a table says where 12800 and 6400 radii do not reach that
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = tolerance)]
+    tolerance: f64,
     /// Say nothing but errors
     #[arg(long)]
     quiet: bool,
 }
 
+/// A factor on tolerances.
+fn tolerance(text: &str) -> Result<f64, String> {
+    let (low, high) = Rule::FACTORS;
+    let factor: f64 = text.parse().map_err(|_| format!("{text:?} is not a number"))?;
+    if (low..=high).contains(&factor) { Ok(factor) } else { Err(format!("{factor} is not within {low} to {high}")) }
+}
+
 impl BuildArgs {
+    /// How finely sizes are resolved.
+    fn rule(&self) -> Rule {
+        Rule::TABLES.scaled(self.tolerance)
+    }
+
     /// The tables to make or check.
     fn targets(&self) -> Result<Vec<Target>, String> {
         let mut targets = Target::all();
@@ -131,7 +148,8 @@ fn build_tables(args: &BuildArgs) -> Result<(), String> {
             say(&format!("{path}  {:>9}  {}", size(built.bytes), seconds(built.time)));
         }
     };
-    let built = build::build_some(&args.raw_data, &args.data, &args.targets()?, progress).map_err(|e| e.to_string())?;
+    let built = build::build_some(&args.raw_data, &args.data, &args.targets()?, &args.rule(), progress)
+        .map_err(|e| e.to_string())?;
     if !args.quiet {
         let total = built.iter().map(|table| table.bytes).sum();
         say(&format!("{} tables, {} in {}", built.len(), size(total), seconds(start.elapsed())));
@@ -141,7 +159,8 @@ fn build_tables(args: &BuildArgs) -> Result<(), String> {
 
 fn check_tables(args: &BuildArgs) -> Result<(), String> {
     let start = Instant::now();
-    let report = build::check_some(&args.raw_data, &args.data, &args.targets()?).map_err(|e| e.to_string())?;
+    let report =
+        build::check_some(&args.raw_data, &args.data, &args.targets()?, &args.rule()).map_err(|e| e.to_string())?;
     if !args.quiet {
         for table in &report.tables {
             let path = padded(args, &table.target.file_name());
@@ -189,6 +208,12 @@ mod tests {
     #[test]
     fn the_arguments_are_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn factors_on_tolerances_are_refused_beyond_their_range() {
+        assert_eq!(tolerance("0.5"), Ok(0.5));
+        assert!(["0", "-1", "1e4", "NaN", "much"].iter().all(|text| tolerance(text).is_err()));
     }
 
     #[test]

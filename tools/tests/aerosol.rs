@@ -4,8 +4,10 @@
 use std::path::Path;
 use std::sync::LazyLock;
 use tables::views::{AerosolSource, Biome};
-use tools::aerosol::bulk::Rule;
+use tools::aerosol::angles::cosines;
+use tools::aerosol::bulk::{Bulk, Rule, Tolerance};
 use tools::aerosol::library::Library;
+use tools::aerosol::material::index;
 use tools::aerosol::mixture::{self, Mixed};
 use tools::aerosol::recipe::{Inputs, Part, Profile, SpeciesRecipe, opac_species, recipe};
 use tools::aerosol::thesis;
@@ -16,8 +18,9 @@ static RAW: LazyLock<RawData> = LazyLock::new(|| {
     RawData::from_dir(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../raw-data")).expect("raw-data/ is sound")
 });
 
-/// Good to 1e-3 in cross-sections, which is what is compared here.
-const RULE: Rule = Rule { first: 50, most: 1600, cross_sections: 5e-4, misplaced: 1.0 };
+/// Good to 1e-3 in cross-sections, which is what is compared with publications.
+const RULE: Rule = Rule { first: 50, absorbing: ROUGH, clear: ROUGH };
+const ROUGH: Tolerance = Tolerance { cross_sections: 5e-4, phase: 1.0, most: 1600 };
 
 fn inputs() -> Inputs<'static> {
     Inputs { opac: &RAW.aerosol_opac, jaenicke: &RAW.aerosol_jaenicke }
@@ -85,6 +88,72 @@ fn components_have_the_optics_that_opac_publishes() {
         largest[0], largest[1], largest[2]
     );
     assert!(deviating.is_empty(), "beyond 0.7 %, 0.001, 0.01: {deviating:#?}");
+}
+
+/// Largest error of the cross-sections and g, and of the differential cross-section at any angle.
+fn deviations(found: &Bulk, exact: &Bulk) -> [f64; 2] {
+    let relative = |a: f64, b: f64| (a / b - 1.0).abs();
+    let optics = relative(found.extinction, exact.extinction).max(relative(found.scattering, exact.scattering));
+    let pairs = found.matrix[0].iter().zip(&exact.matrix[0]);
+    let phase = pairs.map(|(a, b)| relative(*a, *b)).fold(0.0, f64::max);
+    [optics.max((found.asymmetry - exact.asymmetry).abs()), phase]
+}
+
+#[test]
+fn averages_reach_their_tolerance_and_estimates_cover_their_errors() {
+    // Against four times as many radii as the longest of the rules, between the limits of the distributions themselves.
+    let nothing = Tolerance { cross_sections: 0.0, phase: 0.0, most: 12_800 };
+    let fine = Rule { first: 50, absorbing: nothing, clear: nothing };
+    let shorter = |tolerance: Tolerance| Tolerance { most: 3200, ..tolerance };
+    let Rule { first, absorbing, clear } = Rule::TABLES;
+    let rule = Rule { first, absorbing: shorter(absorbing), clear: shorter(clear) };
+    let opac = &RAW.aerosol_opac;
+    let kinds = [
+        ("soot", 0.0),
+        ("inso", 0.0),
+        ("minm", 0.0),
+        ("miam", 0.0),
+        ("mitr", 0.0),
+        ("waso", 0.0),
+        ("waso", 90.0),
+        ("suso", 0.0),
+        ("ssam", 80.0),
+    ];
+    let all: Vec<_> = kinds
+        .iter()
+        .map(|(name, humidity)| Part::Component((*name).into()).particles(opac, *humidity).expect("a component"))
+        .collect();
+    let angles = cosines(&[180.0, 178.0, 160.0, 140.0, 120.0, 90.0, 60.0, 30.0, 10.0, 3.0, 1.0, 0.0]);
+    let wavelengths = [400.0, 600.0, 1000.0];
+    let by = |rule: &Rule| Library::new(opac, all.clone(), &wavelengths, &angles, rule).expect("spheres in range");
+    let (found, exact) = (by(&rule), by(&fine));
+    let (mut count, mut covered, mut unmet) = (0, 0, 0);
+    for particles in &all {
+        let pairs = found.get(particles).expect("computed").iter().zip(exact.get(particles).expect("computed"));
+        for ((found, exact), nm) in pairs.zip(wavelengths) {
+            let errors = deviations(found, exact);
+            let estimates = [found.error.cross_sections, found.error.phase];
+            let m = index(opac, &particles.material, particles.humidity_percent, nm).expect("an index");
+            let wanted = rule.tolerance(m);
+            unmet += usize::from(!found.reached);
+            for ((error, estimate), wanted) in
+                errors.into_iter().zip(estimates).zip([wanted.cross_sections, wanted.phase])
+            {
+                count += 1;
+                covered += usize::from(error <= estimate);
+                let told = format!("{} at {nm} nm: error {error:e}, estimate {estimate:e}", particles.material);
+                // An estimate that fails fails by little.
+                assert!(!found.reached || error <= 2.0 * wanted, "{told}");
+                if error > estimate {
+                    println!("{told}");
+                }
+            }
+        }
+    }
+    println!("{covered} of {count} estimates cover the error; {unmet} of {} averages miss their tolerance", count / 2);
+    assert!(20 * covered >= 19 * count, "{covered} of {count}");
+    // Clear sea salt at least, so that what is not reached is among the tests.
+    assert!(unmet > 0 && unmet < 10, "{unmet}");
 }
 
 #[test]

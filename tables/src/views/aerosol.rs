@@ -1,12 +1,15 @@
 //! Aerosol: what there is in each biome, how much of it where, and how it scatters and absorbs.
 
 use super::{WAVELENGTH, bounded, scalar};
-use crate::{Axis, Curve, Field, Interpolation, Kind, Outside, Table, TableError, excerpt};
+use crate::{Axis, Curve, Field, Interpolation, Kind, Outside, Scale, Table, TableError, excerpt};
 use std::fmt;
 use std::sync::Arc;
 
 /// The axis of the cosine of the scattering angle, from -1 (backward) to 1 (forward).
 pub const COSINE: (&str, &str) = ("cosine", "1");
+
+/// The axis of the cosine for the ratios of the scattering matrix.
+pub const MATRIX_COSINE: (&str, &str) = ("matrix_cosine", "1");
 
 /// Wavelength in nm at which an amount of aerosol is stated.
 pub const REFERENCE_WAVELENGTH_NM: f64 = 550.0;
@@ -169,6 +172,19 @@ pub struct Optics {
     pub phase: Vec<f64>,
 }
 
+/// Scattering matrix of a species at one humidity and wavelength, relative to the phase function P11: with I, Q, U, V
+/// referred to the plane of scattering, randomly oriented mirror-symmetric particles have P12 = P21, P34 = -P43, and
+/// spheres P22 = P11, P44 = P33 (Bohren & Huffman 1983, sections 4.4.4 and 13.6). At each of [`Species::matrix_cosines`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Matrix {
+    /// P12 / P11: the degree of linear polarisation of scattered natural light is its negative.
+    pub p12: Vec<f64>,
+    /// P33 / P11.
+    pub p33: Vec<f64>,
+    /// P34 / P11.
+    pub p34: Vec<f64>,
+}
+
 /// One species: particles that have their sizes and materials in fixed shares, so that one profile
 /// and one set of spectra describe them.
 #[derive(Debug, Clone)]
@@ -186,6 +202,7 @@ pub struct Species {
     scattering: Field,
     asymmetry: Field,
     phase: Field,
+    matrix: Option<(Axis, [Field; 3])>,
 }
 
 /// The aerosol of a biome after a source, or somebody's own.
@@ -215,6 +232,8 @@ pub mod suffix {
     pub const ASYMMETRY: &str = "_asymmetry";
     /// Field over humidity, wavelength and cosine, sr^-1.
     pub const PHASE: &str = "_phase";
+    /// Fields P12, P33 and P34 over P11, over humidity, wavelength and the cosine of the matrix, 1; all or none.
+    pub const MATRIX: [&str; 3] = ["_p12", "_p33", "_p34"];
 }
 
 impl Aerosol {
@@ -227,13 +246,14 @@ impl Aerosol {
     /// Settings `biome` and `source`, or `source` (`own`) and `name`; axes `wavelength` (nm) and `cosine` (1, from -1 to 1); for each species S the
     /// axes `S_altitude` (m), `S_humidity` (percent) and the fields `S_number_density` (m^-3) over altitude,
     /// `S_default_humidity` (percent) without axes, `S_extinction`, `S_scattering` (m^2) and `S_asymmetry` (1)
-    /// over humidity and wavelength, `S_phase` (sr^-1) over humidity, wavelength and cosine. Further fields
-    /// (errors) are allowed.
+    /// over humidity and wavelength, `S_phase` (sr^-1) over humidity, wavelength and cosine. If there is the axis
+    /// `matrix_cosine` (1, from -1 to 1), also `S_p12`, `S_p33`, `S_p34` (1) over humidity, wavelength and it. Further
+    /// fields (errors) are allowed.
     ///
     /// # Errors
     /// [`TableError`] if the table is of another kind, lacks a field, or holds impossible values: a negative
-    /// density or cross-section, more scattering than extinction, or a phase function that is
-    /// negative or whose integral is off 1 by more than 1e-5.
+    /// density or cross-section, more scattering than extinction, a phase function that is
+    /// negative or whose integral is off 1 by more than 1e-5, or a ratio of the matrix beyond -1 to 1.
     pub fn from_table(table: &Table) -> Result<Self, TableError> {
         table.expect_kind(Kind::Aerosol)?;
         let origin = Origin::from_table(table)?;
@@ -301,6 +321,13 @@ impl Species {
         if density.axis().outside != Outside::Zero {
             return Err(TableError::Inconsistent(format!("axis {altitude:?} must be zero outside")));
         }
+        let matrix = if table.axis(MATRIX_COSINE.0).is_ok() {
+            let over = [humidity.as_str(), WAVELENGTH.0, MATRIX_COSINE.0];
+            let [p12, p33, p34] = suffix::MATRIX.map(|end| table.field(&full(end), "1", &over).cloned());
+            Some((refusing_axis(table, MATRIX_COSINE.0, MATRIX_COSINE.1)?.clone(), [p12?, p33?, p34?]))
+        } else {
+            None
+        };
         let species = Self {
             name: name.into(),
             number_density_m3: bounded(density, name, 0.0, 1e13)?,
@@ -312,6 +339,7 @@ impl Species {
             scattering: spectral(suffix::SCATTERING, "m^2")?,
             asymmetry: spectral(suffix::ASYMMETRY, "1")?,
             phase: table.field(&full(suffix::PHASE), "sr^-1", &[&humidity, WAVELENGTH.0, COSINE.0])?.clone(),
+            matrix,
         };
         species.validate()?;
         Ok(species)
@@ -319,7 +347,8 @@ impl Species {
 
     fn validate(&self) -> Result<(), TableError> {
         let fail = |text: &str| Err(TableError::Inconsistent(format!("species {:?}: {text}", self.name)));
-        if self.cosine.range() != (-1.0, 1.0) {
+        let whole = |cosine: &Axis| cosine.range() == (-1.0, 1.0);
+        if !whole(&self.cosine) || self.matrix.as_ref().is_some_and(|(cosine, _)| !whole(cosine)) {
             return fail("cosines must reach from -1 to 1");
         }
         if self.humidity.locate(self.default_humidity_percent).is_err() {
@@ -339,6 +368,11 @@ impl Species {
                 return fail("a phase function is negative or its integral is not 1");
             }
         }
+        let mut ratios = self.matrix.iter().flat_map(|(_, fields)| fields).flat_map(|field| &field.values);
+        // Rounding to single precision.
+        if ratios.any(|ratio| ratio.abs() > 1.0 + 2e-7) {
+            return fail("a ratio of the scattering matrix is outside -1 to 1");
+        }
         Ok(())
     }
 
@@ -346,6 +380,12 @@ impl Species {
     #[must_use]
     pub fn cosines(&self) -> &[f64] {
         &self.cosine.nodes
+    }
+
+    /// Cosines of the angles of the scattering matrix, from -1 (backward) to 1 (forward); `None` if the table has none.
+    #[must_use]
+    pub fn matrix_cosines(&self) -> Option<&[f64]> {
+        self.matrix.as_ref().map(|(cosine, _)| cosine.nodes.as_slice())
     }
 
     /// Lowest and highest relative humidity in percent; equal if the species does not take up water here.
@@ -373,9 +413,9 @@ impl Species {
     /// # Errors
     /// [`TableError::OutOfRange`] outside either axis.
     pub fn cross_sections(&self, humidity_percent: f64, wavelength_nm: f64) -> Result<(f64, f64), TableError> {
-        let corners = self.corners(humidity_percent, wavelength_nm)?;
-        let extinction = corners.mix(&self.extinction);
-        Ok((extinction, corners.mix(&self.scattering).min(extinction)))
+        let nodes = self.nodes(humidity_percent, wavelength_nm)?;
+        let extinction = mix(&nodes, &self.extinction);
+        Ok((extinction, mix(&nodes, &self.scattering).min(extinction)))
     }
 
     /// Optics at a relative humidity (percent) and wavelength (nm): cross-sections as
@@ -385,50 +425,60 @@ impl Species {
     /// [`TableError::OutOfRange`] outside either axis.
     pub fn optics(&self, humidity_percent: f64, wavelength_nm: f64) -> Result<Optics, TableError> {
         let (extinction_m2, scattering_m2) = self.cross_sections(humidity_percent, wavelength_nm)?;
-        let corners = self.corners(humidity_percent, wavelength_nm)?;
-        let angles = self.cosine.nodes.len();
-        let mut phase = vec![0.0; angles];
-        for (row, weight) in corners.rows.into_iter().zip(corners.weights()).filter(|(_, weight)| *weight > 0.0) {
-            for (sum, value) in phase.iter_mut().zip(&self.phase.values[row * angles..(row + 1) * angles]) {
-                *sum += weight * value;
-            }
-        }
-        Ok(Optics { extinction_m2, scattering_m2, asymmetry: corners.mix(&self.asymmetry), phase })
+        let nodes = self.nodes(humidity_percent, wavelength_nm)?;
+        let phase = mix_rows(&nodes, &self.phase, self.cosine.nodes.len());
+        Ok(Optics { extinction_m2, scattering_m2, asymmetry: mix(&nodes, &self.asymmetry), phase })
     }
 
-    fn corners(&self, humidity_percent: f64, wavelength_nm: f64) -> Result<Corners, TableError> {
-        let nowhere = || TableError::Inconsistent("humidity and wavelength axes must refuse outside".into());
-        let h = self.humidity.locate(humidity_percent)?.ok_or_else(nowhere)?;
-        let w = self.wavelength.locate(wavelength_nm)?.ok_or_else(nowhere)?;
+    /// The scattering matrix at a relative humidity (percent) and wavelength (nm), its ratios linear in both;
+    /// `None` if the table has none.
+    ///
+    /// # Errors
+    /// [`TableError::OutOfRange`] outside either axis.
+    pub fn matrix(&self, humidity_percent: f64, wavelength_nm: f64) -> Result<Option<Matrix>, TableError> {
+        let nodes = self.nodes(humidity_percent, wavelength_nm)?;
+        Ok(self.matrix.as_ref().map(|(cosine, fields)| {
+            let [p12, p33, p34] = fields.each_ref().map(|field| mix_rows(&nodes, field, cosine.nodes.len()));
+            Matrix { p12, p33, p34 }
+        }))
+    }
+
+    /// Rows of humidity and wavelength around a place, with their weights.
+    fn nodes(&self, humidity_percent: f64, wavelength_nm: f64) -> Result<Vec<(usize, f64)>, TableError> {
+        let near = |axis: &Axis, x: f64| -> Result<Vec<(usize, f64)>, TableError> {
+            let nowhere = || TableError::Inconsistent("humidity and wavelength axes must refuse outside".into());
+            let at = axis.locate(x)?.ok_or_else(nowhere)?;
+            let both = [(at.index, 1.0 - at.fraction), (at.index + 1, at.fraction)];
+            Ok(both.into_iter().filter(|(_, weight)| *weight > 0.0).collect())
+        };
+        let wavelengths = near(&self.wavelength, wavelength_nm)?;
         let row = |h: usize, w: usize| h * self.wavelength.nodes.len() + w;
-        let (h1, w1) = (h.index + usize::from(h.fraction > 0.0), w.index + usize::from(w.fraction > 0.0));
-        Ok(Corners {
-            rows: [row(h.index, w.index), row(h.index, w1), row(h1, w.index), row(h1, w1)],
-            humidity: h.fraction,
-            wavelength: w.fraction,
-        })
+        let humidities = near(&self.humidity, humidity_percent)?;
+        let all = humidities.iter().flat_map(|(h, a)| wavelengths.iter().map(move |(w, b)| (row(*h, *w), a * b)));
+        Ok(all.collect())
     }
 }
 
-/// The four nodes around a humidity and wavelength.
-struct Corners {
-    rows: [usize; 4],
-    humidity: f64,
-    wavelength: f64,
+/// The weighted mean of a field without further axes, on its scale.
+fn mix(nodes: &[(usize, f64)], field: &Field) -> f64 {
+    match *nodes {
+        [(row, _)] => field.values[row],
+        _ if field.scale == Scale::Logarithmic => {
+            nodes.iter().map(|(row, weight)| weight * field.values[*row].ln()).sum::<f64>().exp()
+        }
+        _ => nodes.iter().map(|(row, weight)| weight * field.values[*row]).sum(),
+    }
 }
 
-impl Corners {
-    fn weights(&self) -> [f64; 4] {
-        let (h, w) = (self.humidity, self.wavelength);
-        [(1.0 - h) * (1.0 - w), (1.0 - h) * w, h * (1.0 - w), h * w]
+/// The weighted mean of a field over a further axis of so many nodes, at each of these.
+fn mix_rows(nodes: &[(usize, f64)], field: &Field, length: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; length];
+    for (row, weight) in nodes {
+        for (sum, value) in sums.iter_mut().zip(&field.values[row * length..(row + 1) * length]) {
+            *sum += weight * value;
+        }
     }
-
-    fn mix(&self, field: &Field) -> f64 {
-        let [a, b, c, d] = self.rows.map(|row| field.values[row]);
-        let along = |a, b| if a == b { a } else { field.scale.between(a, b, self.wavelength) };
-        let (low, high) = (along(a, b), along(c, d));
-        if low == high { low } else { field.scale.between(low, high, self.humidity) }
-    }
+    sums
 }
 
 /// Integral over the sphere of a function linear between cosines: 2 pi times the trapezoidal sum. The rule by

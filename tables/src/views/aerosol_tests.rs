@@ -1,5 +1,4 @@
 use super::*;
-use crate::Scale;
 use crate::{Precision, Tolerance};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -78,6 +77,31 @@ fn optics_are_mixed_by_the_rules_of_their_fields() {
     assert!((integral(aerosol.species[0].cosines(), &optics.phase) - 1.0).abs() < 1e-15, "mixing keeps the integral");
     assert!((optics.phase[2] * 4.0 * PI - 1.25).abs() < 1e-15);
     assert!(aerosol.species[0].optics(81.0, 550.0).is_err() && aerosol.species[0].optics(80.0, 499.0).is_err());
+}
+
+#[test]
+fn the_scattering_matrix_is_optional_and_mixed_as_the_phase_function() {
+    let mut table = sample();
+    let none = Aerosol::from_table(&table).expect("valid");
+    assert_eq!(none.species[0].matrix_cosines(), None);
+    assert_eq!(none.species[0].matrix(0.0, 500.0).expect("inside"), None);
+    table.axes.push(Axis::new(MATRIX_COSINE.0, MATRIX_COSINE.1, vec![-1.0, 1.0]).expect("valid"));
+    let over = ["haze_humidity", "wavelength", "matrix_cosine"];
+    for (end, sign) in suffix::MATRIX.into_iter().zip([1.0, -1.0, 0.5]) {
+        assert!(Aerosol::from_table(&table).is_err(), "all three or none");
+        let values = [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.4].map(|v| sign * v).to_vec();
+        table.fields.push(field(end, "1", &over, Scale::Linear, values));
+    }
+    let species = &Aerosol::from_table(&table).expect("valid").species[0];
+    assert_eq!(species.matrix_cosines(), Some([-1.0, 1.0].as_slice()));
+    let matrix = species.matrix(40.0, 550.0).expect("inside").expect("there");
+    // A quarter of each corner.
+    let expected = [1.0, -1.0, 0.5].map(|sign| sign * 0.35);
+    for (found, expected) in [&matrix.p12, &matrix.p33, &matrix.p34].into_iter().zip(expected) {
+        assert!(found[0] == 0.0 && (found[1] - expected).abs() < 1e-15, "{found:?} for {expected}");
+    }
+    table.fields.last_mut().expect("there").values[0] = 1.1;
+    assert!(Aerosol::from_table(&table).is_err(), "a ratio above 1");
 }
 
 #[test]

@@ -12,7 +12,8 @@ mod light;
 mod ozone;
 
 pub use aerosol::{
-    Aerosol, AerosolSource, Biome, COSINE, Optics, Origin, REFERENCE_WAVELENGTH_NM, Species, integral, suffix,
+    Aerosol, AerosolSource, Biome, COSINE, MATRIX_COSINE, Matrix, Optics, Origin, REFERENCE_WAVELENGTH_NM, Species,
+    integral, suffix,
 };
 pub use air::{Rayleigh, StandardAtmosphere};
 pub use ground::GroundAlbedo;

@@ -37,7 +37,8 @@ impl Library {
             }
         }
         let shortest = wavelengths_nm.iter().copied().fold(f64::INFINITY, f64::min) * 1e-9;
-        let largest = distinct.iter().map(|p| p.sizes.limits().1.exp()).fold(0.0, f64::max);
+        let limit = |p: &Particles| [rule.absorbing, rule.clear].map(|t| Rule::limits(&p.sizes, t).1.exp());
+        let largest = distinct.iter().flat_map(limit).fold(0.0, f64::max);
         let angles = AngularTable::new(cosines, terms(1.001 * 2.0 * PI * largest / shortest))?;
         let jobs: Vec<(usize, usize)> =
             (0..distinct.len()).flat_map(|p| (0..wavelengths_nm.len()).map(move |w| (p, w))).collect();

@@ -20,6 +20,8 @@ pub struct Mixed {
     pub asymmetry: f64,
     /// Phase function, sr^-1, normalised by the rule of [`super::angles`]; empty where no angles were asked for.
     pub phase: Vec<f64>,
+    /// P12, P33 and P34 over the phase function, 1, at the same angles.
+    pub ratios: [Vec<f64>; 3],
     /// The integral of the phase function over the sphere before it was normalised, less 1.
     pub correction: f64,
     /// Bound on the error of the average over sizes.
@@ -42,15 +44,19 @@ pub fn mix(parts: &[(&Bulk, f64)], cosines: &[f64]) -> Mixed {
     let mean = |value: &dyn Fn(&Bulk) -> f64| parts.iter().map(|(bulk, n)| n * value(bulk)).sum::<f64>() / number;
     let extinction = mean(&|b| b.extinction);
     let scattering = mean(&|b| b.scattering);
-    let mut phase = vec![0.0; cosines.len()];
+    let mut matrix: [Vec<f64>; 4] = std::array::from_fn(|_| vec![0.0; cosines.len()]);
     let mut changes = vec![0.0; cosines.len()];
     for (bulk, n) in parts {
         let weight = n / (number * scattering);
-        for ((sum, change), value) in phase.iter_mut().zip(&mut changes).zip(&bulk.differential) {
+        for (sum, value) in matrix.iter_mut().flatten().zip(bulk.matrix.iter().flatten()) {
             *sum += weight * value;
+        }
+        for (change, value) in changes.iter_mut().zip(&bulk.matrix[0]) {
             *change += weight * value * bulk.error.phase;
         }
     }
+    let [mut phase, ratios @ ..] = matrix;
+    let ratios = ratios.map(|element| element.iter().zip(&phase).map(|(e, p)| e / p).collect());
     let error = QuadratureError {
         cross_sections: mean(&|b| b.extinction * b.error.cross_sections) / extinction,
         misplaced: mean(&|b| b.scattering * b.error.misplaced) / scattering,
@@ -63,6 +69,7 @@ pub fn mix(parts: &[(&Bulk, f64)], cosines: &[f64]) -> Mixed {
         absorption: mean(&|b| b.absorption),
         asymmetry: mean(&|b| b.scattering * b.asymmetry) / scattering,
         phase,
+        ratios,
         correction,
         error,
     }

@@ -1,8 +1,9 @@
 //! Aerosols: from size distributions and refractive indices to cross-sections and phase functions of
 //! mixtures, and the biomes made of them.
 //!
-//! [`size`] has the distributions of radii, log-normal or tabulated; [`bulk`] averages single spheres of [`crate::mie`] over it;
-//! [`material`] interpolates refractive indices; [`angles`] has the angles of the tables and the rule of
+//! [`size`] has the distributions of radii, log-normal or tabulated; [`bulk`] averages single spheres of [`crate::mie`]
+//! over them by the rules of [`quadrature`]; [`material`] interpolates refractive indices; [`angles`] has the angles of
+//! the tables and the rule of
 //! normalisation; [`recipe`] says what each biome is made of, after each source; [`library`] computes all
 //! particles of some recipes in parallel; [`mixture`] mixes them; [`fit`] fits phase functions; [`thesis`] reproduces the numbers
 //! of the thesis, wrong as they are, so that each correction is a number.
@@ -13,6 +14,7 @@ pub mod fit;
 pub mod library;
 pub mod material;
 pub mod mixture;
+pub mod quadrature;
 pub mod recipe;
 pub mod size;
 pub mod thesis;

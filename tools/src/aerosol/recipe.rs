@@ -137,6 +137,27 @@ impl Part {
     }
 }
 
+/// Every kind of particles that these recipes need at the humidities (percent) that `of` chooses.
+///
+/// # Errors
+/// As [`Part::particles`].
+pub fn particles<'a, 's>(
+    substances: impl Into<Substances<'s>>,
+    recipes: &'a [Recipe],
+    of: impl Fn(&'a SpeciesRecipe) -> &'a [f64],
+) -> Result<Vec<Particles>, AerosolError> {
+    let substances = substances.into();
+    let mut all = Vec::new();
+    for species in recipes.iter().flat_map(|recipe| &recipe.species) {
+        for &humidity in of(species) {
+            for (part, _) in &species.parts {
+                all.push(part.particles(substances, humidity)?);
+            }
+        }
+    }
+    Ok(all)
+}
+
 impl Profile {
     /// The number density in m^-3 against altitude in m, for a density `at_sea_level`.
     ///

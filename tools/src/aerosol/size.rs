@@ -4,9 +4,9 @@ use super::AerosolError;
 use std::f64::consts::PI;
 use tables::Scale;
 
-/// Standard deviations of ln r, beyond the radii that matter, at which an average is cut off: the Gaussian
-/// is 7e-10 there.
-const REACH: f64 = 6.5;
+/// Powers of the radius whose shares bound what an average cuts off below and above: cross-sections of small spheres grow
+/// at least as r^2, and of spheres beyond the Rayleigh regime nothing grows faster than the intensity ahead, as r^4.
+const POWERS: (f64, f64) = (2.0, 4.0);
 
 /// A log-normal distribution of the radius: the number of particles per interval of ln r is
 /// n(ln r) = exp(-ln^2(r / r_m) / (2 s^2)) / (sqrt(2 pi) s), s = ln sigma_g, for r_min <= r <= r_max, else 0.
@@ -41,6 +41,18 @@ impl LogNormal {
         self.median
     }
 
+    /// Standard deviation s of ln r.
+    #[must_use]
+    pub fn deviation(&self) -> f64 {
+        self.s
+    }
+
+    /// Where r^`power` n(ln r) has its maximum: ln r_m + p s^2.
+    #[must_use]
+    pub fn peak(&self, power: f64) -> f64 {
+        self.median.ln() + power * self.s * self.s
+    }
+
     /// n(ln r): particles per unit of ln r, of one particle of the whole distribution; the limits are not applied.
     #[must_use]
     pub fn density(&self, ln_r: f64) -> f64 {
@@ -48,14 +60,15 @@ impl LogNormal {
         (-0.5 * t * t).exp() / ((2.0 * PI).sqrt() * self.s)
     }
 
-    /// ln r between which averages are taken: the limits of the distribution, or narrower where the rest is
-    /// below 1e-8 of any cross-section. r^p n(ln r) has its maximum at ln r_m + p s^2; cross-sections grow as
-    /// r^2 (p = 2) where spheres are large and fall at least as r^3 (p = 3) where they are small.
+    /// ln r between which averages are taken: the limits of the distribution, or narrower where what lies beyond is at
+    /// most the share `cut` (0 < cut < 0.5) of any average. Of the mean of r^p, whose density is a Gaussian about
+    /// ln r_m + p s^2, the share beyond t standard deviations is below exp(-t^2 / 2) / 2; the limits have that share of
+    /// r^2 below and of r^4 above.
     #[must_use]
-    pub fn limits(&self) -> (f64, f64) {
-        let ln = self.median.ln();
-        let low = ln + (3.0 * self.s - REACH) * self.s;
-        let high = ln + (2.0 * self.s + REACH) * self.s;
+    pub fn limits(&self, cut: f64) -> (f64, f64) {
+        let reach = (-2.0 * (2.0 * cut).ln()).sqrt();
+        let low = self.peak(POWERS.0) - reach * self.s;
+        let high = self.peak(POWERS.1) + reach * self.s;
         (low.max(self.smallest.ln()), high.min(self.largest.ln()))
     }
 }
@@ -137,11 +150,20 @@ impl Sizes {
         }
     }
 
+    /// In words, for what a table says of it.
+    #[must_use]
+    pub fn described(&self) -> String {
+        match self {
+            Self::LogNormal(sizes) => format!("{:.3} um", sizes.median_radius() * 1e6),
+            Self::Tabulated(_) => "measured sizes".into(),
+        }
+    }
+
     /// ln r between which averages are taken; see [`LogNormal::limits`]. Of a table its first and last radius.
     #[must_use]
-    pub fn limits(&self) -> (f64, f64) {
+    pub fn limits(&self, cut: f64) -> (f64, f64) {
         match self {
-            Self::LogNormal(sizes) => sizes.limits(),
+            Self::LogNormal(sizes) => sizes.limits(cut),
             Self::Tabulated(sizes) => (sizes.ln_r[0], sizes.ln_r[sizes.ln_r.len() - 1]),
         }
     }
@@ -175,7 +197,7 @@ mod tests {
         let at = sizes.density(0.7_f64.ln());
         assert!((at * exact / 0.7_f64.powi(-3) - 1.0).abs() < 1e-12, "{at}");
         let sizes = Sizes::from(sizes);
-        let (low, high) = sizes.limits();
+        let (low, high) = sizes.limits(1e-9);
         assert!(sizes.density(low) > 0.0 && sizes.density(high) > 0.0, "the ends belong to it");
         assert_eq!((sizes.density(low - 1e-9), sizes.density(high + 1e-9)), (0.0, 0.0));
     }
@@ -209,15 +231,25 @@ mod tests {
     }
 
     #[test]
-    fn what_the_limits_leave_out_is_negligible() {
+    fn limits_leave_out_no_more_than_asked() {
         let sizes = LogNormal::new(0.1e-6, 2.0, 1e-12, 1.0).expect("sound");
-        let (low, high) = sizes.limits();
-        let weight = |x: f64, p: f64| (p * x).exp() * sizes.density(x);
-        let s2 = 2.0_f64.ln().powi(2);
-        let peak = |p: f64| weight(0.1e-6_f64.ln() + p * s2, p);
-        // exp(-6.5^2 / 2) = 7e-10 of the maximum.
-        assert!(weight(low, 3.0) < 1e-9 * peak(3.0) && weight(high, 2.0) < 1e-9 * peak(2.0));
-        let cut = LogNormal::new(0.1e-6, 2.0, 0.05e-6, 1e-6).expect("sound").limits();
+        let s = 2.0_f64.ln();
+        for cut in [1e-3, 1e-5, 1e-7] {
+            let (low, high) = sizes.limits(cut);
+            // Shares of r^2 and r^4 beyond the limits, by the trapezoidal rule from there to where nothing is left.
+            let beyond = |p: f64, from: f64, to: f64| {
+                let h = (to - from) / 4000.0;
+                let whole = 0.1e-6_f64.powf(p) * (0.5 * p * p * s * s).exp();
+                let sum: f64 =
+                    (0..=4000).map(|i| from + f64::from(i) * h).map(|x| (p * x).exp() * sizes.density(x)).sum();
+                h.abs() * sum / whole
+            };
+            for share in [beyond(2.0, low, low - 10.0), beyond(4.0, high, high + 10.0)] {
+                // exp(-t^2 / 2) / 2 is 2.5 to 7 times the share in this range of t.
+                assert!(share < cut && share > 0.1 * cut, "{share:e} of {cut:e}");
+            }
+        }
+        let cut = LogNormal::new(0.1e-6, 2.0, 0.05e-6, 1e-6).expect("sound").limits(1e-7);
         assert_eq!(cut, (0.05e-6_f64.ln(), 1e-6_f64.ln()));
     }
 

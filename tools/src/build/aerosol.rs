@@ -2,28 +2,26 @@
 
 use super::{field, two_digits};
 use crate::aerosol::AerosolError;
-use crate::aerosol::angles::{cosines, degrees};
+use crate::aerosol::angles::{MATRIX_STRIDE, cosines, degrees};
 use crate::aerosol::bulk::Rule;
 use crate::aerosol::library::Library;
 use crate::aerosol::material::Substances;
 use crate::aerosol::mixture::{Mixed, species};
-use crate::aerosol::recipe::{Inputs, Particles, Recipe, SpeciesRecipe, recipe};
+use crate::aerosol::recipe::{Inputs, Part, Recipe, SpeciesRecipe, particles, recipe};
 use crate::raw::RawData;
 use tables::units::WAVELENGTH_RANGE_NM;
-use tables::views::{AerosolSource, Biome, COSINE, Origin, WAVELENGTH, suffix};
+use tables::views::{AerosolSource, Biome, COSINE, MATRIX_COSINE, Origin, WAVELENGTH, suffix};
 use tables::{Axis, Field, Kind, Precision, Provenance, Scale, Table, TableError, Tolerance};
 
 /// Step of the wavelength axis, nm: every other node is one of the refractive indices, which are linear between theirs.
 const WAVELENGTH_STEP: f64 = 25.0;
-
-/// How finely sizes are resolved in the tables.
-const RULE: Rule = Rule { first: 50, most: 1600, cross_sections: 3e-4, misplaced: 3e-4 };
 
 /// Of the intervals between wavelengths, the interpolation is measured in every how many.
 const MEASURED: usize = 4;
 
 /// The optics of every kind of particles of some recipes.
 pub(crate) struct Prepared {
+    rule: Rule,
     axis: Axis,
     /// At the nodes of the axis, at all humidities.
     nodes: Library,
@@ -55,25 +53,8 @@ pub(super) fn provenance(raw: &RawData, source: AerosolSource) -> Vec<Provenance
     provenance
 }
 
-/// Every kind of particles that these recipes need at the humidities that `of` chooses.
-fn particles<'a>(
-    substances: Substances<'_>,
-    recipes: &'a [Recipe],
-    of: impl Fn(&'a SpeciesRecipe) -> &'a [f64],
-) -> Result<Vec<Particles>, AerosolError> {
-    let mut all = Vec::new();
-    for species in recipes.iter().flat_map(|recipe| &recipe.species) {
-        for &humidity in of(species) {
-            for (part, _) in &species.parts {
-                all.push(part.particles(substances, humidity)?);
-            }
-        }
-    }
-    Ok(all)
-}
-
 /// Computes the optics of every kind of particles of these recipes.
-pub(crate) fn prepare(substances: Substances<'_>, recipes: &[Recipe]) -> Result<Prepared, TableError> {
+pub(crate) fn prepare(substances: Substances<'_>, recipes: &[Recipe], rule: &Rule) -> Result<Prepared, TableError> {
     let (low, high) = WAVELENGTH_RANGE_NM;
     let count = ((high - low) / WAVELENGTH_STEP) as usize + 1;
     let axis = Axis::uniform(WAVELENGTH.0, WAVELENGTH.1, low, WAVELENGTH_STEP, count)?;
@@ -81,13 +62,13 @@ pub(crate) fn prepare(substances: Substances<'_>, recipes: &[Recipe]) -> Result<
     let angles = cosines(&degrees());
     let compute = || -> Result<(Library, Library), AerosolError> {
         let all = particles(substances, recipes, |s| &s.humidities)?;
-        let nodes = Library::new(substances, all, &axis.nodes, &angles, &RULE)?;
+        let nodes = Library::new(substances, all, &axis.nodes, &angles, rule)?;
         let usual = particles(substances, recipes, |s| std::slice::from_ref(&s.default_humidity))?;
-        let halves = Library::new(substances, usual, &between, &angles, &RULE)?;
+        let halves = Library::new(substances, usual, &between, &angles, rule)?;
         Ok((nodes, halves))
     };
     let (nodes, halves) = compute().map_err(refused)?;
-    Ok(Prepared { axis, nodes, halves })
+    Ok(Prepared { rule: *rule, axis, nodes, halves })
 }
 
 /// The fields of one species, gathered.
@@ -97,6 +78,7 @@ struct Columns {
     scattering: Vec<f64>,
     asymmetry: Vec<f64>,
     phase: Vec<f64>,
+    ratios: [Vec<f64>; 3],
     cross_section_error: Vec<f64>,
     misplaced: Vec<f64>,
     phase_error: Vec<f64>,
@@ -104,12 +86,14 @@ struct Columns {
 }
 
 /// Largest deviation, at the default humidity, of what is interpolated half-way between wavelengths from what is
-/// computed there: of cross-sections (relative), of g (absolute), and of the phase function (relative).
+/// computed there: of cross-sections (relative), of g (absolute), of the phase function (relative), and of the
+/// ratios of the matrix (absolute).
 #[derive(Default)]
 struct Halves {
     cross_sections: f64,
     asymmetry: f64,
     phase: f64,
+    ratios: f64,
 }
 
 fn halves(nodes: &[Mixed], exact: &[Mixed]) -> Halves {
@@ -124,6 +108,10 @@ fn halves(nodes: &[Mixed], exact: &[Mixed]) -> Halves {
         for ((a, b), exact) in a.phase.iter().zip(&b.phase).zip(&exact.phase) {
             worst.phase = worst.phase.max(relative(0.5 * (a + b), *exact));
         }
+        let ratios = |mixed: &'_ Mixed| mixed.ratios.concat();
+        for ((a, b), exact) in ratios(a).iter().zip(ratios(b)).zip(ratios(exact)) {
+            worst.ratios = worst.ratios.max((0.5 * (a + b) - exact).abs());
+        }
     }
     worst
 }
@@ -135,9 +123,16 @@ pub(crate) fn table(
     made: &Recipe,
     provenance: Vec<Provenance>,
 ) -> Result<Table, TableError> {
-    let mut axes = vec![prepared.axis.clone(), Axis::new(COSINE.0, COSINE.1, prepared.nodes.cosines().to_vec())?];
+    let cosines = prepared.nodes.cosines();
+    let fewer = cosines.iter().copied().step_by(MATRIX_STRIDE).collect();
+    let mut axes = vec![
+        prepared.axis.clone(),
+        Axis::new(COSINE.0, COSINE.1, cosines.to_vec())?,
+        Axis::new(MATRIX_COSINE.0, MATRIX_COSINE.1, fewer)?,
+    ];
     let mut fields = Vec::new();
     let (mut quadrature, mut misplaced, mut angle_error, mut correction) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+    let mut unmet = Vec::new();
     for recipe in &made.species {
         let mut columns = Columns::default();
         let mut between = Halves::default();
@@ -148,6 +143,9 @@ pub(crate) fn table(
                 columns.scattering.push(one.scattering);
                 columns.asymmetry.push(one.asymmetry);
                 columns.phase.extend(&one.phase);
+                for (all, ratio) in columns.ratios.iter_mut().zip(&one.ratios) {
+                    all.extend(ratio.iter().copied().step_by(MATRIX_STRIDE));
+                }
                 columns.cross_section_error.push(one.error.cross_sections);
                 columns.misplaced.push(one.error.misplaced);
                 columns.phase_error.push(one.error.phase);
@@ -162,12 +160,15 @@ pub(crate) fn table(
         misplaced = columns.misplaced.iter().copied().fold(misplaced, f64::max);
         angle_error = columns.phase_error.iter().copied().fold(angle_error, f64::max);
         correction = correction.max(columns.largest_correction);
+        unmet.extend(shortfalls(substances, prepared, recipe).map_err(refused)?);
         add_species(&mut axes, &mut fields, recipe, columns, &between)?;
     }
     let settings = [
         ("composition", made.composition.clone()),
         ("particles", "homogeneous spheres, mixed externally".to_owned()),
-        ("size average", format!("nested trapezoidal rules in ln r, {} to {} intervals", 4 * RULE.first, RULE.most)),
+        ("size average", format!("nested rules in ln r, at least {} intervals", 4 * prepared.rule.first)),
+        ("tolerance of size averages", prepared.rule.to_string()),
+        ("tolerance not reached", if unmet.is_empty() { "nowhere".to_owned() } else { unmet.join("; ") }),
         ("largest quadrature error of a cross-section", format!("{:e}", two_digits(quadrature))),
         ("largest share of light misplaced by quadrature", format!("{:e}", two_digits(misplaced))),
         ("largest quadrature error of a phase function at an angle", format!("{:e}", two_digits(angle_error))),
@@ -193,6 +194,42 @@ pub(crate) fn table(
             .collect(),
         provenance,
     })
+}
+
+/// Where the averages over sizes of the parts of a species miss their tolerance: humidities and runs of wavelengths.
+fn shortfalls(
+    substances: Substances<'_>,
+    prepared: &Prepared,
+    recipe: &SpeciesRecipe,
+) -> Result<Vec<String>, AerosolError> {
+    let mut found: Vec<(String, Vec<String>)> = Vec::new();
+    for (part, _) in &recipe.parts {
+        let name = match part {
+            Part::Component(name) => name.clone(),
+            Part::Mode(mode) => format!("{} of {}", mode.material, mode.sizes.described()),
+        };
+        let (mut places, mut seen) = (Vec::new(), Vec::new());
+        for &humidity in &recipe.humidities {
+            let particles = part.particles(substances, humidity)?;
+            // Particles that take up no water are the same at every humidity.
+            if seen.contains(&particles) {
+                continue;
+            }
+            let (optics, nodes) = (prepared.nodes.get(&particles)?, prepared.nodes.wavelengths_nm());
+            let missed: Vec<usize> = (0..optics.len()).filter(|&w| !optics[w].reached).collect();
+            // Runs of neighbours.
+            for run in missed.chunk_by(|a, b| a + 1 == *b) {
+                let (first, last) = (nodes[run[0]], nodes[run[run.len() - 1]]);
+                let range = if first == last { format!("{first}") } else { format!("{first}-{last}") };
+                places.push(format!("{range} nm at {} %", particles.humidity_percent));
+            }
+            seen.push(particles);
+        }
+        if !places.is_empty() {
+            found.push((name, places));
+        }
+    }
+    Ok(found.iter().map(|(name, places)| format!("{}, {name}: {}", recipe.name, places.join(", "))).collect())
 }
 
 fn add_species(
@@ -232,6 +269,15 @@ fn add_species(
         interpolation_error: Some(two_digits(between.phase)),
         ..field(&full(suffix::PHASE), "sr^-1", &over, 1e-3, columns.phase)
     });
+    let over = [humidity.as_str(), WAVELENGTH.0, MATRIX_COSINE.0];
+    for (end, values) in suffix::MATRIX.into_iter().zip(columns.ratios) {
+        fields.push(Field {
+            // Ratios near zero are differences.
+            tolerance: Tolerance { relative: 1e-6, absolute: 1e-7 },
+            interpolation_error: Some(two_digits(between.ratios)),
+            ..field(&full(end), "1", &over, 1e-3, values)
+        });
+    }
     let errors = [
         ("_cross_section_quadrature_error", columns.cross_section_error),
         ("_misplaced_by_quadrature", columns.misplaced),
@@ -256,6 +302,21 @@ mod tests {
         let (low, high) = WAVELENGTH_RANGE_NM;
         assert_eq!((high - low) % WAVELENGTH_STEP, 0.0);
         assert_eq!((tables::views::REFERENCE_WAVELENGTH_NM - low) % WAVELENGTH_STEP, 0.0);
-        assert!(degrees().len() < 400, "the tables would grow beyond what data/ may hold");
+    }
+
+    #[test]
+    fn all_aerosols_fit_into_what_data_may_hold() {
+        let raw =
+            RawData::from_dir(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../raw-data")).expect("sound");
+        let inputs = Inputs { opac: &raw.aerosol_opac, jaenicke: &raw.aerosol_jaenicke };
+        let all = AerosolSource::ALL.into_iter().flat_map(|s| Biome::ALL.map(|b| recipe(inputs, s, b)));
+        let recipes = all.collect::<Result<Vec<_>, _>>().expect("recipes");
+        let rows: usize = recipes.iter().flat_map(|r| &r.species).map(|s| s.humidities.len()).sum();
+        let (low, high) = WAVELENGTH_RANGE_NM;
+        let wavelengths = ((high - low) / WAVELENGTH_STEP) as usize + 1;
+        let angles = degrees().len();
+        let bytes = 4 * rows * wavelengths * (angles + 3 * angles.div_ceil(MATRIX_STRIDE));
+        // Phase functions and matrices; 10 MB less what all other numbers take.
+        assert!(bytes < 9_500_000, "{bytes} bytes");
     }
 }

@@ -1,6 +1,7 @@
 //! Whether `data/` is what `raw-data/` makes: a rebuild in memory, compared value by value.
 
 use super::{BuildError, Maker, Target};
+use crate::aerosol::bulk::Rule;
 use crate::raw::RawData;
 use rayon::prelude::*;
 use std::fmt;
@@ -93,18 +94,18 @@ impl fmt::Display for Difference {
 /// [`BuildError`] if the inputs cannot be taken or the folder cannot be listed; what is wrong with the
 /// tables is in the report.
 pub fn check(raw_dir: &Path, data_dir: &Path) -> Result<CheckReport, BuildError> {
-    check_some(raw_dir, data_dir, &Target::all())
+    check_some(raw_dir, data_dir, &Target::all(), &Rule::TABLES)
 }
 
-/// Compares the tables of `targets` alone, as [`check`] compares all. A file that only another build would write is
+/// Compares the tables of `targets` alone, as [`check`] compares all, with a rule for averages over sizes. A file that only another build would write is
 /// not foreign.
 ///
 /// # Errors
 /// As [`check`].
-pub fn check_some(raw_dir: &Path, data_dir: &Path, targets: &[Target]) -> Result<CheckReport, BuildError> {
+pub fn check_some(raw_dir: &Path, data_dir: &Path, targets: &[Target], rule: &Rule) -> Result<CheckReport, BuildError> {
     let raw = RawData::from_dir(raw_dir)?;
     let foreign = foreign_files(data_dir).map_err(|source| BuildError::Folder { path: data_dir.into(), source })?;
-    let maker = Maker::new(&raw, targets)?;
+    let maker = Maker::new(&raw, targets, rule)?;
     let tables: Vec<Result<TableCheck, TableError>> = targets
         .par_iter()
         .map(|&target| {

@@ -12,6 +12,7 @@ mod ozone;
 
 pub use check::{CheckReport, Difference, TableCheck, check, check_some};
 
+use crate::aerosol::bulk::Rule;
 use crate::aerosol::recipe::Recipe;
 use crate::raw::{RawData, RawError};
 use rayon::prelude::*;
@@ -92,10 +93,10 @@ pub struct Built {
 /// # Errors
 /// [`BuildError`], of the first table in that order that failed.
 pub fn build(raw_dir: &Path, data_dir: &Path, progress: impl Fn(&Built) + Sync) -> Result<Vec<Built>, BuildError> {
-    build_some(raw_dir, data_dir, &Target::all(), progress)
+    build_some(raw_dir, data_dir, &Target::all(), &Rule::TABLES, progress)
 }
 
-/// Makes the tables of `targets` alone, as [`build`] makes all.
+/// Makes the tables of `targets` alone, as [`build`] makes all, with a rule for averages over sizes.
 ///
 /// # Errors
 /// As [`build`].
@@ -103,11 +104,12 @@ pub fn build_some(
     raw_dir: &Path,
     data_dir: &Path,
     targets: &[Target],
+    rule: &Rule,
     progress: impl Fn(&Built) + Sync,
 ) -> Result<Vec<Built>, BuildError> {
     let raw = RawData::from_dir(raw_dir)?;
     std::fs::create_dir_all(data_dir).map_err(|source| BuildError::Folder { path: data_dir.into(), source })?;
-    let maker = Maker::new(&raw, targets)?;
+    let maker = Maker::new(&raw, targets, rule)?;
     let results: Vec<Result<Built, BuildError>> = targets
         .par_iter()
         .map(|&target| {
@@ -140,14 +142,14 @@ struct Maker<'a> {
 }
 
 impl<'a> Maker<'a> {
-    fn new(raw: &'a RawData, targets: &[Target]) -> Result<Self, TableError> {
+    fn new(raw: &'a RawData, targets: &[Target], rule: &Rule) -> Result<Self, TableError> {
         let aerosol = |target: &Target| match *target {
             Target::Single(_) => None,
             Target::Aerosol(source, biome) => Some((source, biome)),
         };
         let aerosols: Vec<_> = targets.iter().filter_map(aerosol).collect();
         let recipes = aerosol::recipes(raw, &aerosols)?;
-        Ok(Self { raw, aerosols: aerosol::prepare((&raw.aerosol_opac).into(), &recipes)?, recipes })
+        Ok(Self { raw, aerosols: aerosol::prepare((&raw.aerosol_opac).into(), &recipes, rule)?, recipes })
     }
 
     fn table(&self, target: Target) -> Result<Table, TableError> {

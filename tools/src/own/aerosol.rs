@@ -5,6 +5,7 @@ use super::sheet::{Order, Schema, Sheet};
 use super::sun::covers;
 use super::units::Quantity;
 use super::{Import, OwnError, range};
+use crate::aerosol::bulk::Rule;
 use crate::aerosol::material::Substances;
 use crate::aerosol::recipe::{Part, Particles, Profile, Recipe, SpeciesRecipe};
 use crate::aerosol::size::{LogNormal, Sizes, Tabulated};
@@ -370,7 +371,7 @@ pub fn table(own: &OwnAerosol) -> Result<Import, OwnError> {
     let recipe = Recipe { origin: Origin::Own(own.name.clone()), composition, species: vec![species] };
     let rows = own.rows();
     let substances = Substances { indices: &rows, components: &[] };
-    let prepared = build::prepare(substances, std::slice::from_ref(&recipe))?;
+    let prepared = build::prepare(substances, std::slice::from_ref(&recipe), &Rule::TABLES)?;
     let mut provenance = vec![match &own.sizes {
         OwnSizes::Modes(modes) => modes.provenance.clone(),
         OwnSizes::Distribution(distribution) => distribution.provenance.clone(),

@@ -1,6 +1,7 @@
 //! Figures of the studies, from their numbers.
 
-use super::{Name, Part, large_spheres, mie_stability, phase_fits};
+use super::size_quadrature::{self, Quadrature};
+use super::{Name, Part, aerosol_tables, large_spheres, mie_stability, phase_fits};
 use crate::frame::Frame;
 use crate::plot::colours::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION};
 use crate::plot::model::{Axis, Colour, Curve, Figure, Key, Panel, Stroke};
@@ -21,6 +22,8 @@ pub fn figure(name: Name, part: &Part) -> Result<Figure, PolarsError> {
         Name::MieSpeed => mie_speed(part),
         Name::LargeSpheres => large_spheres::figure(part),
         Name::PhaseFits => phase_fits::figure(part),
+        Name::SizeQuadrature => size_quadrature(part),
+        Name::AerosolTables => aerosol_tables(part),
     }
 }
 
@@ -193,4 +196,106 @@ fn mie_speed(part: &Part) -> Result<Figure, PolarsError> {
         _ => "Mie solvers: two size distributions, 61 wavelengths, 181 angles",
     };
     Ok(Figure::new(what, vec![vec![panel.key(Key::Beside)]]))
+}
+
+fn size_quadrature(part: &Part) -> Result<Figure, PolarsError> {
+    let (title, lowest) = if part.name == size_quadrature::PARTS[0] {
+        ("Extinction, scattering and g of particles averaged over sizes, 300 nm: largest error", 1e-12)
+    } else {
+        ("Phase functions of particles averaged over sizes, 300 nm: largest relative error at an angle", 1e-10)
+    };
+    let panel = |(i, (key, _, _, words)): (usize, &(&str, &str, f64, &str))| -> Result<Panel, PolarsError> {
+        let mut curves = Vec::new();
+        let looks = [
+            ("uniform, nested", GREY),
+            ("periodic, nested", BLUE),
+            ("gathered, nested", VERMILION),
+            ("Clenshaw-Curtis", GREEN),
+            ("Gauss-Legendre", BLACK),
+        ];
+        for (rule, (name, colour)) in Quadrature::ALL.into_iter().zip(looks) {
+            let found = points(&part.frame, ("radii", 1.0), (&size_quadrature::column(key, rule), 1.0))?;
+            // Rounding: the last digits of a sum that is exact.
+            let shown = found.into_iter().map(|(n, error)| (n, error.max(lowest))).collect();
+            curves.push(Curve::new(name, colour, shown));
+        }
+        let axes = (
+            Axis::logarithmic("radii", 10.0, 10_000.0, 1),
+            Axis::logarithmic(if i % 3 == 0 { "error" } else { "" }, lowest, 1.0, 2),
+        );
+        Ok(Panel::new(axes.0, axes.1, curves).titled(*words).key(if i + 1 == size_quadrature::PARTICLES.len() {
+            Key::BottomLeft
+        } else {
+            Key::None
+        }))
+    };
+    let panels = size_quadrature::PARTICLES.iter().enumerate().map(panel).collect::<Result<Vec<_>, _>>()?;
+    Ok(Figure::new(title, panels.chunks(3).map(<[_]>::to_vec).collect()))
+}
+
+fn aerosol_tables(part: &Part) -> Result<Figure, PolarsError> {
+    const COLOURS: [Colour; 3] = [GREY, BLUE, GREEN];
+    let frame = &part.frame;
+    let error = |label: &str| Axis::logarithmic(label, 1e-7, 1.0, 1);
+    if part.name == aerosol_tables::PARTS[2] {
+        let mut curves = Vec::new();
+        for (stride, colour) in aerosol_tables::STRIDES.into_iter().zip(COLOURS) {
+            let found = points(frame, ("scattering_angle_deg", 1.0), (&aerosol_tables::column(stride), 1.0))?;
+            curves.push(Curve::new(format!("{} angles", aerosol_tables::angles(stride)), colour, found));
+        }
+        let angle = Axis::linear("scattering angle / °", 0.0, 180.0, 30.0);
+        let panel = Panel::new(angle, error("error of radiance"), curves).key(Key::TopRight);
+        let title = "What angles cost: largest error of radiance over all biomes, 300 and 500 nm";
+        return Ok(Figure::new(title, vec![vec![panel]]));
+    }
+    let curve = |name: &str, column: &str, colour| -> Result<Curve, PolarsError> {
+        Ok(Curve::new(name, colour, points(frame, ("megabytes", 1.0), (column, 1.0))?).stroke(Stroke::Marks))
+    };
+    let curves = vec![
+        curve("largest", "largest_error", VERMILION)?,
+        curve("root of the mean square", "rms_error", BLUE)?,
+        curve("largest of the matrix", "matrix_error", GREEN)?,
+    ];
+    let size = Axis::logarithmic("phase functions and matrices / MB", 1.0, 100.0, 1);
+    let words = if part.name == aerosol_tables::PARTS[0] {
+        "steps of 50, 25 (also of ln P) and 12.5 nm".to_owned()
+    } else {
+        let counts = aerosol_tables::STRIDES.map(|stride| aerosol_tables::angles(stride).to_string());
+        format!("{} angles", counts.join(", "))
+    };
+    let title = format!("Aerosol tables: error of radiance between nodes against size, {words}");
+    Ok(Figure::new(title, vec![vec![Panel::new(size, error("error of radiance"), curves)]]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A frame of these columns, each with the same rising numbers.
+    fn frame(columns: impl IntoIterator<Item = String>) -> Frame {
+        Frame::new(columns.into_iter().map(|name| (name, vec![1e-3, 1e-2, 1e-1]))).expect("equal lengths")
+    }
+
+    #[test]
+    fn figures_of_long_studies_show_all_their_columns() {
+        let mut columns = vec!["radii".to_owned()];
+        for (key, ..) in size_quadrature::PARTICLES {
+            columns.extend(Quadrature::ALL.map(|rule| size_quadrature::column(key, rule)));
+        }
+        for name in size_quadrature::PARTS {
+            let figure = figure(Name::SizeQuadrature, &Part { name, frame: frame(columns.clone()) }).expect("drawn");
+            let panels: Vec<&Panel> = figure.rows.iter().flatten().collect();
+            assert_eq!(panels.len(), size_quadrature::PARTICLES.len());
+            assert!(panels.iter().all(|panel| panel.curves.len() == Quadrature::ALL.len()));
+        }
+        let by_angle = aerosol_tables::STRIDES.map(aerosol_tables::column);
+        let others = ["megabytes", "largest_error", "rms_error", "matrix_error"].map(String::from);
+        let all: Vec<String> = ["scattering_angle_deg".to_owned()].into_iter().chain(by_angle).chain(others).collect();
+        for name in aerosol_tables::PARTS {
+            let figure = figure(Name::AerosolTables, &Part { name, frame: frame(all.clone()) }).expect("drawn");
+            assert_eq!(figure.rows[0][0].curves.len(), 3, "{name}");
+        }
+        let part = Part { name: "", frame: frame(["radii".to_owned()]) };
+        assert!(figure(Name::SizeQuadrature, &part).is_err(), "numbers of another study");
+    }
 }

@@ -4,6 +4,7 @@
 //! was made of them, from the tables; but for the figures, which draw what [`thesis`] had beside the tables, nothing in
 //! Airlight uses what it finds. The figures of a study (with the feature `plot`) are drawn from its numbers.
 
+mod aerosol_tables;
 #[cfg(feature = "plot")]
 mod figures;
 mod interpolation;
@@ -12,11 +13,13 @@ mod mie_speed;
 mod mie_stability;
 mod phase_fits;
 mod rayleigh;
+mod size_quadrature;
 pub mod thesis;
 
 #[cfg(feature = "plot")]
 pub use figures::figure;
 
+use crate::aerosol::AerosolError;
 use crate::data::Data;
 use crate::frame::Frame;
 use crate::mie::MieError;
@@ -45,6 +48,9 @@ pub enum StudyError {
     /// A sphere cannot be solved.
     #[error(transparent)]
     Mie(#[from] MieError),
+    /// The optics of particles cannot be computed.
+    #[error(transparent)]
+    Aerosol(#[from] AerosolError),
     /// The numbers make no CSV.
     #[error("numbers of a study: {0}")]
     Frame(#[from] PolarsError),
@@ -79,11 +85,15 @@ pub enum Name {
     LargeSpheres,
     /// Henyey-Greenstein functions fitted to the phase functions of the biomes.
     PhaseFits,
+    /// Averages over sizes: error against the number of radii.
+    SizeQuadrature,
+    /// Aerosol tables: error of radiance against size.
+    AerosolTables,
 }
 
 impl Name {
     /// Every study.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Rayleigh,
         Self::Interpolation,
         Self::Thesis,
@@ -91,6 +101,8 @@ impl Name {
         Self::MieSpeed,
         Self::LargeSpheres,
         Self::PhaseFits,
+        Self::SizeQuadrature,
+        Self::AerosolTables,
     ];
 
     /// The name by which it is asked for; its files are called `study-NAME`.
@@ -104,6 +116,8 @@ impl Name {
             Self::MieSpeed => "mie-speed",
             Self::LargeSpheres => "large-spheres",
             Self::PhaseFits => "phase-fits",
+            Self::SizeQuadrature => "size-quadrature",
+            Self::AerosolTables => "aerosol-tables",
         }
     }
 }
@@ -147,6 +161,8 @@ pub fn make(name: Name, raw_dir: &Path, data: Data<'_>) -> Result<Results, Study
         Name::MieSpeed => mie_speed::measure(raw_dir),
         Name::LargeSpheres => large_spheres::compare(raw_dir),
         Name::PhaseFits => phase_fits::compare(data),
+        Name::SizeQuadrature => size_quadrature::compare(raw_dir),
+        Name::AerosolTables => aerosol_tables::compare(raw_dir),
     }
 }
 
