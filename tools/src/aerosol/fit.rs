@@ -335,7 +335,10 @@ mod tests {
     fn fits_are_minima() {
         let cosines = cosines(&degrees());
         // Something that none of the forms contains.
-        let mut phase: Vec<f64> = cosines.iter().map(|mu| (3.0 * mu).exp() + 0.3 * mu * mu + 0.1).collect();
+        let shape = |mu: f64| (3.0 * mu).exp() + 0.3 * mu * mu + 0.1;
+        // 2 pi times its integral: 2 sinh(3) / 3 + 0.2 + 0.2.
+        let whole = 2.0 * PI * (2.0 * 3.0_f64.sinh() / 3.0 + 0.4);
+        let mut phase: Vec<f64> = cosines.iter().map(|&mu| shape(mu) / whole).collect();
         normalise(&cosines, &mut phase);
         let observed = Observed::new(&cosines, &phase);
         let square = |fit: Fit| observed.square(&fit);

@@ -237,7 +237,8 @@ fn species(table: &Table) -> Vec<Sheet> {
     sheets
 }
 
-/// Phase functions against their integral and the asymmetry parameter, default humidities and quadrature errors.
+/// Phase functions against their integral and the asymmetry parameter, default humidities, scattering matrices and
+/// quadrature errors.
 fn phases(table: &Table) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (name, _) in species_of(table) {
@@ -257,23 +258,67 @@ fn phases(table: &Table) -> Vec<Finding> {
                 findings.push(finding.of(name));
             }
         }
-        // The averages over sizes stop at 3e-4, or where resonances of clear coarse particles set an end.
-        for (end, low, high) in [
-            ("_cross_section_quadrature_error", 1e-5, 5e-3),
-            ("_misplaced_by_quadrature", 1e-5, 5e-3),
-            ("_phase_quadrature_error", 1e-4, 0.5),
-        ] {
-            let Some(errors) = of(end) else { continue };
-            let largest = errors.values.iter().copied().fold(0.0, f64::max);
-            if !(low..=high).contains(&largest) {
-                let finding = Finding::new(
-                    Check::Range,
-                    &[&errors.name],
-                    format!("{largest:.2e} at most"),
-                    format!("a largest error of {low:e} to {high:e}"),
-                );
-                findings.push(finding.of(name));
-            }
+        findings.extend(matrix_laws(table, name));
+    }
+    findings.extend(quadrature_laws(table));
+    findings
+}
+
+/// The scattering matrix of a species: P33 is 1 ahead and -1 back, P12 and P34 vanish there, polarised light is at most all
+/// (P12^2 + P33^2 + P34^2 <= 1, van de Hulst 1957, section 5.14), and spheres do polarise.
+fn matrix_laws(table: &Table, name: &str) -> Vec<Finding> {
+    /// What rounding to single precision leaves.
+    const ROUNDING: f64 = 1e-6;
+    /// The least that P12 and P34 of a tenth of spheres' sizes reach at some angle and wavelength.
+    const LEAST: f64 = 0.02;
+    let of = |end: &str| field(table, &format!("{name}{end}"));
+    let Some(cosine) = axis(table, tables::views::MATRIX_COSINE.0) else { return Vec::new() };
+    let [Some(p12), Some(p33), Some(p34)] = suffix::MATRIX.map(of) else { return Vec::new() };
+    let rows = |field: &'_ Field| field.values.chunks(cosine.nodes.len()).map(<[f64]>::to_vec).collect::<Vec<_>>();
+    let mut findings = Vec::new();
+    for (field, (back, ahead)) in [(p12, (0.0, 0.0)), (p33, (-1.0, 1.0)), (p34, (0.0, 0.0))] {
+        let off = rows(field)
+            .iter()
+            .map(|row| (row[0] - back).abs().max((row[row.len() - 1] - ahead).abs()))
+            .fold(0.0, f64::max);
+        let largest = field.values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        if off > ROUNDING || largest > 1.0 + ROUNDING || largest < LEAST {
+            let found = format!("{} at most, and {} from what it is ahead and back", round(largest), round(off));
+            let expected = format!("{LEAST} to 1, {back} at 180 degrees and {ahead} at 0");
+            findings.push(Finding::new(Check::Range, &[&field.name], found, expected).of(name));
+        }
+    }
+    let squares = p12.values.iter().zip(&p33.values).zip(&p34.values).map(|((a, b), c)| a * a + b * b + c * c);
+    let largest = squares.fold(0.0, f64::max);
+    if findings.is_empty() && largest > 1.0 + 3.0 * ROUNDING {
+        let found = format!("a sum of squares of {}", round(largest));
+        findings.push(Finding::new(Check::Identity, &[&p12.name, &p33.name, &p34.name], found, "at most 1").of(name));
+    }
+    findings
+}
+
+/// The errors of averages over sizes against the largest that the table's settings state.
+fn quadrature_laws(table: &Table) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for (end, setting) in [
+        ("_cross_section_quadrature_error", "largest quadrature error of a cross-section"),
+        ("_misplaced_by_quadrature", "largest share of light misplaced by quadrature"),
+        ("_phase_quadrature_error", "largest quadrature error of a phase function at an angle"),
+    ] {
+        let Some(stated) = table.settings.get(setting).and_then(|text| text.parse::<f64>().ok()) else { continue };
+        let largest = |field: &Field| field.values.iter().copied().fold(0.0, f64::max);
+        let fields: Vec<&Field> = table.fields.iter().filter(|field| field.name.ends_with(end)).collect();
+        let Some(worst) = fields.iter().max_by(|a, b| largest(a).total_cmp(&largest(b))) else { continue };
+        // The setting has two digits.
+        if (largest(worst) / stated - 1.0).abs() > 0.06 {
+            let names: Vec<&str> = if largest(worst) > stated {
+                vec![&worst.name]
+            } else {
+                fields.iter().map(|field| field.name.as_str()).collect()
+            };
+            let found = format!("{:.2e} at most", largest(worst));
+            let expected = format!("{stated:e}, as the table's settings say");
+            findings.push(Finding::new(Check::Identity, &names, found, expected));
         }
     }
     findings
