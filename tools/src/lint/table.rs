@@ -282,7 +282,7 @@ fn matrix_laws(table: &Table, name: &str) -> Vec<Finding> {
             .map(|row| (row[0] - back).abs().max((row[row.len() - 1] - ahead).abs()))
             .fold(0.0, f64::max);
         let largest = field.values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-        if off > ROUNDING || largest > 1.0 + ROUNDING || largest < LEAST {
+        if off > ROUNDING || !(LEAST..=1.0 + ROUNDING).contains(&largest) {
             let found = format!("{} at most, and {} from what it is ahead and back", round(largest), round(off));
             let expected = format!("{LEAST} to 1, {back} at 180 degrees and {ahead} at 0");
             findings.push(Finding::new(Check::Range, &[&field.name], found, expected).of(name));
