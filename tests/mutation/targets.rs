@@ -6,6 +6,7 @@ use renderer::film::exr;
 use renderer::scene::Scene;
 use std::path::Path;
 use tables::{Table, TableError, file, views};
+use tools::mie_tasks::{Alike, Distributions};
 use tools::own;
 use tools::raw::{self, Source};
 
@@ -135,6 +136,15 @@ pub fn targets() -> Vec<Target> {
     });
     let spheres = "id,x,m_re,m_im\n1,0.1,1.5,-0.01\n\"a,b\",1e3,1.33,0\n";
     add("mie cases", Form::Text, true, vec![spheres.into()], mie_cases);
+    let spheres = "x,m_re,m_im\n0.1,1.5,-0.01\n1e3,1.5,-0.01\n";
+    add("mie spheres", Form::Text, true, vec![spheres.into()], |bytes| {
+        Alike::parse(text(bytes)?).map(drop).map_err(|e| e.to_string())
+    });
+    let sizes =
+        r#"{"angles_deg": [0, 90], "a": {"wavelengths": [0.5], "r": [0.1, 1], "w": [2, 1], "m_re": 1.5, "m_im": 0}}"#;
+    add("mie distributions", Form::Text, true, vec![sizes.into()], |bytes| {
+        Distributions::parse(text(bytes)?).map(drop).map_err(|e| e.to_string())
+    });
     let scenes = ["clear-noon", "desert-dusk", "limb"].map(|name| file(&format!("scenes/{name}.json")));
     let full = Scene { width: Some(8), biome: Some(views::Biome::Urban), aod: Some(0.2), ..Scene::default() }
         .to_json()

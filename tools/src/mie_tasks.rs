@@ -43,35 +43,49 @@ fn timed<T>(repeats: u32, mut work: impl FnMut() -> Result<T, MieError>) -> Resu
     Ok((result, fastest))
 }
 
-/// Task (a): a CSV with the columns `x`, `m_re`, `m_im` (m = n - ik, `m_im` <= 0), all of one index. Gives `Qext`, `Qsca`,
-/// `Qabs`, `Qback`, `g` of each in order.
-///
-/// # Errors
-/// [`TaskError`] for a malformed input, more than one index, or a sphere out of range.
-pub fn efficiencies(input: &str, instructions: Instructions, repeats: u32) -> Result<Done, TaskError> {
-    let mut reader = csv::Reader::from_reader(input.as_bytes());
-    let mut rows: Vec<(f64, f64, f64)> = Vec::new();
-    for row in reader.deserialize() {
-        rows.push(row.map_err(|e: csv::Error| TaskError::Input(e.to_string()))?);
+/// Task (a): efficiencies of spheres of one index.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Alike {
+    m: RefractiveIndex,
+    x: Vec<f64>,
+}
+
+impl Alike {
+    /// Reads a CSV with the columns `x`, `m_re`, `m_im` (m = n - ik, `m_im` <= 0), all of one index.
+    ///
+    /// # Errors
+    /// [`TaskError`] for a malformed input, no sphere, more than one index, or one that is none.
+    pub fn parse(text: &str) -> Result<Self, TaskError> {
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let mut rows: Vec<(f64, f64, f64)> = Vec::new();
+        for row in reader.deserialize() {
+            rows.push(row.map_err(|e: csv::Error| TaskError::Input(e.to_string()))?);
+        }
+        let Some(&(_, n, minus_k)) = rows.first() else { return Err(TaskError::Input("no spheres".into())) };
+        if let Some(i) = rows.iter().position(|row| (row.1, row.2) != (n, minus_k)) {
+            return Err(TaskError::Input(format!("line {}: another refractive index than in line 2", i + 2)));
+        }
+        Ok(Self { m: RefractiveIndex::new(n, -minus_k)?, x: rows.iter().map(|row| row.0).collect() })
     }
-    let Some(&(_, n, minus_k)) = rows.first() else { return Err(TaskError::Input("no spheres".into())) };
-    if let Some(i) = rows.iter().position(|row| (row.1, row.2) != (n, minus_k)) {
-        return Err(TaskError::Input(format!("line {}: another refractive index than in line 2", i + 2)));
+
+    /// `Qext`, `Qsca`, `Qabs`, `Qback`, `g` of each sphere in order.
+    ///
+    /// # Errors
+    /// [`MieError`] for a sphere out of range.
+    pub fn solve(&self, instructions: Instructions, repeats: u32) -> Result<Done, MieError> {
+        let mut solver = Spheres::with(instructions);
+        let (found, fastest) = timed(repeats, || solver.efficiencies(self.m, &self.x))?;
+        let mut csv = String::from("Qext,Qsca,Qabs,Qback,g\n");
+        for Efficiencies { extinction, scattering, absorption, backscatter, asymmetry } in found {
+            // Writing to a String does not fail.
+            let _ = writeln!(csv, "{extinction:e},{scattering:e},{absorption:e},{backscatter:e},{asymmetry:e}");
+        }
+        Ok(Done { csv, fastest })
     }
-    let m = RefractiveIndex::new(n, -minus_k)?;
-    let x: Vec<f64> = rows.iter().map(|row| row.0).collect();
-    let mut solver = Spheres::with(instructions);
-    let (found, fastest) = timed(repeats, || solver.efficiencies(m, &x))?;
-    let mut csv = String::from("Qext,Qsca,Qabs,Qback,g\n");
-    for Efficiencies { extinction, scattering, absorption, backscatter, asymmetry } in found {
-        // Writing to a String does not fail.
-        let _ = writeln!(csv, "{extinction:e},{scattering:e},{absorption:e},{backscatter:e},{asymmetry:e}");
-    }
-    Ok(Done { csv, fastest })
 }
 
 /// One size distribution of task (b).
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 struct Mode {
     /// um.
     wavelengths: Vec<f64>,
@@ -83,66 +97,87 @@ struct Mode {
 }
 
 /// The input of task (b).
-#[derive(Debug, Deserialize)]
-struct Distributions {
+#[derive(Deserialize)]
+struct Input {
     angles_deg: Vec<f64>,
     #[serde(flatten)]
     modes: BTreeMap<String, Mode>,
 }
 
-/// Task (b): JSON `{"angles_deg": [...], NAME: {"wavelengths": [um], "r": [um], "w": [...], "m_re", "m_im"}, ...}`.
-/// Gives for each mode and wavelength `mode`, `iw`, `Cext` and `Csca` (sum of w pi r^2 Q in um^2), `g`, and at each angle
-/// j `Pj` = sum of w (|S1|^2 + |S2|^2) / 2.
-///
-/// # Errors
-/// [`TaskError`] for a malformed input or a sphere out of range.
-pub fn distributions(input: &str, instructions: Instructions, repeats: u32) -> Result<Done, TaskError> {
-    let input: Distributions = serde_json::from_str(input).map_err(|e| TaskError::Input(e.to_string()))?;
-    let cosines: Vec<f64> = input.angles_deg.iter().map(|&a| cosine(a)).collect();
-    let mut jobs = Vec::new();
-    for (name, mode) in &input.modes {
-        if mode.r.len() != mode.w.len() || mode.r.is_empty() {
-            let (r, w) = (mode.r.len(), mode.w.len());
-            return Err(TaskError::Input(format!("{name}: {r} radii and {w} weights; as many of each are needed")));
+/// Task (b): sums over size distributions, at some angles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Distributions {
+    cosines: Vec<f64>,
+    /// By name, with the index of each.
+    modes: Vec<(String, RefractiveIndex, Mode)>,
+    /// Largest size parameter.
+    largest: f64,
+}
+
+impl Distributions {
+    /// Reads JSON `{"angles_deg": [...], NAME: {"wavelengths": [um], "r": [um], "w": [...], "m_re", "m_im"}, ...}`.
+    ///
+    /// # Errors
+    /// [`TaskError`] for a malformed input or a size parameter out of range.
+    pub fn parse(text: &str) -> Result<Self, TaskError> {
+        let input: Input = serde_json::from_str(text).map_err(|e| TaskError::Input(e.to_string()))?;
+        let (mut modes, mut largest) = (Vec::with_capacity(input.modes.len()), 0.0_f64);
+        for (name, mode) in input.modes {
+            if mode.r.len() != mode.w.len() || mode.r.is_empty() {
+                let (r, w) = (mode.r.len(), mode.w.len());
+                return Err(TaskError::Input(format!("{name}: {r} radii and {w} weights; as many of each are needed")));
+            }
+            for x in
+                mode.wavelengths.iter().flat_map(|wavelength| mode.r.iter().map(move |r| 2.0 * PI * r / wavelength))
+            {
+                // The solver refuses the same, but a table comes first, and the largest tells its length.
+                if !(SIZE_PARAMETERS.0..=SIZE_PARAMETERS.1).contains(&x) {
+                    return Err(MieError::Size { x }.into());
+                }
+                largest = largest.max(x);
+            }
+            modes.push((name, RefractiveIndex::new(mode.m_re, -mode.m_im)?, mode));
         }
-        let m = RefractiveIndex::new(mode.m_re, -mode.m_im)?;
-        jobs.extend(mode.wavelengths.iter().enumerate().map(|(i, &wavelength)| (name, mode, m, i, wavelength)));
+        Ok(Self { cosines: input.angles_deg.into_iter().map(cosine).collect(), modes, largest })
     }
-    let sizes =
-        jobs.iter().flat_map(|(_, mode, _, _, wavelength)| mode.r.iter().map(move |r| 2.0 * PI * r / wavelength));
-    let mut largest = 0.0_f64;
-    for x in sizes {
-        // The solver refuses the same, but the table comes first, and the largest tells its length.
-        if !(SIZE_PARAMETERS.0..=SIZE_PARAMETERS.1).contains(&x) {
-            return Err(MieError::Size { x }.into());
-        }
-        largest = largest.max(x);
-    }
-    let mut solver = Spheres::with(instructions);
-    let (found, fastest) = timed(repeats, || {
-        // The table of angular functions is part of the work.
-        let table = AngularTable::new(&cosines, terms(largest))?;
-        let one = |&(_, mode, m, _, wavelength): &(&String, &Mode, RefractiveIndex, usize, f64)| {
-            let k = 2.0 * PI / wavelength;
-            solver.sum(m, mode.r.iter().zip(&mode.w).map(|(r, w)| (k * r, *w)), &table)
+
+    /// For each mode and wavelength `mode`, `iw`, `Cext` and `Csca` (sum of w pi r^2 Q in um^2), `g`, and at each angle j
+    /// `Pj` = sum of w (|S1|^2 + |S2|^2) / 2.
+    ///
+    /// # Errors
+    /// [`MieError`] for a sphere out of range.
+    pub fn solve(&self, instructions: Instructions, repeats: u32) -> Result<Done, MieError> {
+        let each = |(_, m, mode): &'_ (String, RefractiveIndex, Mode), solver: &mut Spheres, table: &AngularTable| {
+            let sums = |wavelength: &f64| {
+                let k = 2.0 * PI / wavelength;
+                solver.sum(*m, mode.r.iter().zip(&mode.w).map(|(r, w)| (k * r, *w)), table)
+            };
+            mode.wavelengths.iter().map(sums).collect::<Result<Vec<_>, _>>()
         };
-        jobs.iter().map(one).collect::<Result<Vec<_>, _>>()
-    })?;
-    let mut csv = String::from("mode,iw,Cext,Csca,g");
-    for j in 0..cosines.len() {
-        let _ = write!(csv, ",P{j}");
-    }
-    csv.push('\n');
-    for ((name, _, _, i, wavelength), sums) in jobs.iter().zip(&found) {
-        let area = (wavelength / (2.0 * PI)).powi(2);
-        let (extinction, scattering) = (area * sums.extinction, area * sums.scattering);
-        let _ = write!(csv, "{name},{i},{extinction:e},{scattering:e},{:e}", sums.forward / sums.scattering);
-        for p in sums.intensity() {
-            let _ = write!(csv, ",{p:e}");
+        let mut solver = Spheres::with(instructions);
+        let (found, fastest) = timed(repeats, || {
+            // The table of angular functions is part of the work.
+            let table = AngularTable::new(&self.cosines, terms(self.largest))?;
+            self.modes.iter().map(|mode| each(mode, &mut solver, &table)).collect::<Result<Vec<_>, _>>()
+        })?;
+        let mut csv = String::from("mode,iw,Cext,Csca,g");
+        for j in 0..self.cosines.len() {
+            let _ = write!(csv, ",P{j}");
         }
         csv.push('\n');
+        for ((name, _, mode), found) in self.modes.iter().zip(&found) {
+            for (i, (wavelength, sums)) in mode.wavelengths.iter().zip(found).enumerate() {
+                let area = (wavelength / (2.0 * PI)).powi(2);
+                let (extinction, scattering) = (area * sums.extinction, area * sums.scattering);
+                let _ = write!(csv, "{name},{i},{extinction:e},{scattering:e},{:e}", sums.forward / sums.scattering);
+                for p in sums.intensity() {
+                    let _ = write!(csv, ",{p:e}");
+                }
+                csv.push('\n');
+            }
+        }
+        Ok(Done { csv, fastest })
     }
-    Ok(Done { csv, fastest })
 }
 
 /// The cosine of an angle in degrees, exact where it is a whole number.
@@ -155,9 +190,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_radius_out_of_range_is_refused_before_the_work() {
+    fn a_radius_out_of_range_is_refused_by_the_reader() {
         let input = r#"{"angles_deg": [0.0, 90.0], "dust": {"wavelengths": [0.5], "r": [1e30], "w": [1.0], "m_re": 1.5, "m_im": -0.01}}"#;
-        let error = distributions(input, Instructions::best(), 1).expect_err("too large");
+        let error = Distributions::parse(input).expect_err("too large");
         assert!(error.to_string().starts_with("size parameter 12566370"), "{error}");
     }
 }

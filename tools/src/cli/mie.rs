@@ -4,7 +4,8 @@ use super::output::{print, put};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use tools::mie::Instructions;
-use tools::{mie_cases, mie_tasks};
+use tools::mie_cases;
+use tools::mie_tasks::{Alike, Distributions};
 
 /// Arguments of `mie`.
 #[derive(Args)]
@@ -52,8 +53,8 @@ pub(super) fn solve(args: &MieArgs) -> Result<(), String> {
     let set = args.instructions.unwrap_or_else(Instructions::best);
     let done = match args.task {
         Task::Cases => return write(&mie_cases::solve(&input).map_err(|e| named(&e))?),
-        Task::A => mie_tasks::efficiencies(&input, set, args.repeat),
-        Task::B => mie_tasks::distributions(&input, set, args.repeat),
+        Task::A => Alike::parse(&input).and_then(|task| Ok(task.solve(set, args.repeat)?)),
+        Task::B => Distributions::parse(&input).and_then(|task| Ok(task.solve(set, args.repeat)?)),
     };
     let done = done.map_err(|e| named(&e))?;
     write(&done.csv)?;

@@ -125,7 +125,7 @@ impl Matrix {
         ]
     }
 
-    /// Adds the spheres of one vector with their weights. `plus` and `minus` hold, for n = 1, 2, ... `count`, the real
+    /// Adds the spheres of the first lanes of a vector, as many as there are weights. `plus` and `minus` hold, for n = 1, 2, ... `count`, the real
     /// parts of (2n + 1) / (n (n + 1)) (a_n + b_n), or of a_n - b_n, in all lanes, then the imaginary parts.
     #[inline(always)]
     pub(super) fn add<S: Simd>(
@@ -177,9 +177,9 @@ impl Matrix {
         let lanes = S::F64_LANES;
         let tile = VECTORS * lanes;
         let block = WIDTH * table.terms;
-        for first in (0..self.parts[0].len()).step_by(tile) {
+        for first in (0..table.cosines.len()).step_by(tile) {
             let start = first / WIDTH * block + first % WIDTH;
-            for sphere in (0..lanes.min(weights.len())).step_by(SPHERES) {
+            for sphere in (0..weights.len()).step_by(SPHERES) {
                 let ahead = sums::<S, SPHERES, VECTORS>(simd, &table.plus[start..], &plus[sphere..], count);
                 let back = sums::<S, SPHERES, VECTORS>(simd, &table.minus[start..], &minus[sphere..], count);
                 for (i, &weight) in weights[sphere..].iter().enumerate().take(SPHERES) {

@@ -1,12 +1,13 @@
 //! Many spheres of one refractive index: their efficiencies, and weighted sums over them.
 
 use super::angular::Matrix;
-use super::lanes::{self, INTERLEAVED, LANES, Orders, Scratch};
+use super::lanes::{self, INTERLEAVED, Orders, Scratch};
 use super::sphere::is_matched;
 use super::{AngularTable, Efficiencies, Instructions, LARGEST_INSIDE, MieError, RefractiveIndex, SIZE_PARAMETERS};
 use super::{Solver, instructions, terms};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Size parameter up to which spheres are solved in vectors; larger ones need more than the precision of a double
 /// in places and are solved one by one, as are those of nearly the index of their surroundings.
@@ -188,48 +189,69 @@ impl Spheres {
         let matched = self.sizes.partition_point(|&x| m.is_one() || is_matched(m, x));
         let vectors = self.sizes.partition_point(|&x| x <= VECTORS_UP_TO).max(matched);
         self.one_by_one(m, 0..matched, angles)?;
-        if matched < vectors {
-            self.orders.reach(terms(self.sizes[vectors - 1]) + 1);
-            instructions::run(
-                self.instructions,
-                Job {
-                    m,
-                    sizes: &self.sizes[matched..vectors],
-                    weights: &self.weights[matched..vectors],
-                    angles,
-                    orders: &self.orders,
-                    scratch: &mut self.scratch,
-                    solved: &mut self.solved,
-                    matrix: &mut self.matrix,
-                },
-            );
-        }
+        self.in_vectors(m, matched..vectors, angles);
         self.one_by_one(m, vectors..self.sizes.len(), angles)
     }
 
-    fn one_by_one(
-        &mut self,
-        m: RefractiveIndex,
-        spheres: std::ops::Range<usize>,
-        angles: &AngularTable,
-    ) -> Result<(), MieError> {
-        for (&x, weight) in self.sizes[spheres.clone()].iter().zip(&self.weights[spheres]) {
-            let sphere = self.single.sphere(m, x)?;
-            self.solved.push(sphere.efficiencies());
-            if angles.cosines().is_empty() {
-                continue;
-            }
+    /// Solves these of the sorted spheres in vectors.
+    fn in_vectors(&mut self, m: RefractiveIndex, spheres: Range<usize>, angles: &AngularTable) {
+        let (sizes, weights) = (&self.sizes[spheres.clone()], &self.weights[spheres]);
+        let Some(&largest) = sizes.last() else { return };
+        self.orders.reach(terms(largest) + 1);
+        let (orders, scratch) = (&self.orders, &mut self.scratch);
+        let (solved, matrix) = (&mut self.solved, &mut self.matrix);
+        instructions::run(self.instructions, Job { m, sizes, weights, angles, orders, scratch, solved, matrix });
+    }
+
+    /// Solves these of the sorted spheres one by one; the sums over angles take them in vectors.
+    fn one_by_one(&mut self, m: RefractiveIndex, spheres: Range<usize>, angles: &AngularTable) -> Result<(), MieError> {
+        let (sizes, weights) = (&self.sizes[spheres.clone()], &self.weights[spheres]);
+        let (single, scratch) = (&mut self.single, &mut self.scratch);
+        let (solved, matrix) = (&mut self.solved, &mut self.matrix);
+        instructions::run(self.instructions, Singles { m, sizes, weights, angles, single, scratch, solved, matrix })
+    }
+}
+
+/// Spheres in rising order that are solved one by one.
+struct Singles<'a> {
+    m: RefractiveIndex,
+    sizes: &'a [f64],
+    weights: &'a [f64],
+    angles: &'a AngularTable,
+    single: &'a mut Solver,
+    scratch: &'a mut Scratch,
+    solved: &'a mut Vec<Efficiencies>,
+    matrix: &'a mut Matrix,
+}
+
+impl WithSimd for Singles<'_> {
+    type Output = Result<(), MieError>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let lanes = S::F64_LANES;
+        for (sizes, weights) in self.sizes.chunks(lanes).zip(self.weights.chunks(lanes)) {
+            let count = if self.angles.cosines().is_empty() { 0 } else { terms(sizes[sizes.len() - 1]) };
             let (plus, minus) = (&mut self.scratch.plus[0], &mut self.scratch.minus[0]);
-            plus.clear();
-            minus.clear();
-            for (i, (a, b)) in sphere.a().iter().zip(sphere.b()).enumerate() {
-                let n = (i + 1) as f64;
-                let factor = (2.0 * n + 1.0) / (n * (n + 1.0));
-                let (sum, difference) = ((a + b) * factor, (a - b) * factor);
-                plus.extend([sum.re, sum.im]);
-                minus.extend([difference.re, difference.im]);
+            for values in [&mut *plus, &mut *minus] {
+                values.clear();
+                values.resize(2 * lanes * count, 0.0);
             }
-            self.matrix.add(pulp::Scalar, angles, (plus, minus), sphere.a().len(), &[*weight]);
+            for (lane, &x) in sizes.iter().enumerate() {
+                let sphere = self.single.sphere(self.m, x)?;
+                self.solved.push(sphere.efficiencies());
+                let orders = plus.chunks_exact_mut(2 * lanes).zip(minus.chunks_exact_mut(2 * lanes));
+                for (i, ((plus, minus), (a, b))) in orders.zip(sphere.a().iter().zip(sphere.b())).enumerate() {
+                    let n = (i + 1) as f64;
+                    let factor = (2.0 * n + 1.0) / (n * (n + 1.0));
+                    for (values, value) in [(plus, (a + b) * factor), (minus, (a - b) * factor)] {
+                        (values[lane], values[lanes + lane]) = (value.re, value.im);
+                    }
+                }
+            }
+            if count > 0 {
+                self.matrix.add(simd, self.angles, (plus, minus), count, weights);
+            }
         }
         Ok(())
     }
@@ -264,10 +286,8 @@ impl Job<'_> {
                 self.solved.push(Efficiencies::from_sums(x, scattering, absorption, totals.cosine[lane], back));
             }
             if keep && !here.is_empty() {
-                let mut weights = [0.0; LANES];
-                weights[..here.len()].copy_from_slice(&self.weights[from..][here]);
                 let coefficients = (self.scratch.plus[v].as_slice(), self.scratch.minus[v].as_slice());
-                self.matrix.add(simd, self.angles, coefficients, *count, &weights[..lanes]);
+                self.matrix.add(simd, self.angles, coefficients, *count, &self.weights[from..][here]);
             }
         }
         group.len()

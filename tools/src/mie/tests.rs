@@ -198,6 +198,32 @@ fn sums_over_spheres_are_those_of_the_spheres() {
 }
 
 #[test]
+fn spheres_solved_one_by_one_are_summed_in_their_lanes() {
+    // More than a vector holds, and one left over, beyond the size of vectors and with an index near 1.
+    let cosines: Vec<f64> = (0..=12).map(|i| (15.0 * f64::from(i)).to_radians().cos()).collect();
+    let angles = AngularTable::new(&cosines, terms(2100.0)).expect("cosines");
+    for (m, first, step) in [(index(1.33, 0.01), 2001.0, 11.0), (index(1.0001, 1e-5), 0.1, 100.0)] {
+        let spheres: Vec<(f64, f64)> = (0..9).map(|i| (first + step * f64::from(i), 1.0 + f64::from(i))).collect();
+        let mut solver = Solver::new();
+        let mut expected = vec![0.0; cosines.len()];
+        for &(x, weight) in &spheres {
+            let sphere = solver.sphere(m, x).expect("in range");
+            for (sum, c) in expected.iter_mut().zip(&cosines) {
+                let s = sphere.amplitudes(*c).expect("a cosine");
+                *sum += 0.5 * weight * (s.s1.norm_sqr() + s.s2.norm_sqr());
+            }
+        }
+        for instructions in Instructions::available() {
+            let sums = Spheres::with(instructions).sum(m, spheres.iter().copied(), &angles).expect("in range");
+            for (j, (found, expected)) in sums.intensity().iter().zip(&expected).enumerate() {
+                // Terms as large as n cancel to amplitudes of some hundreds: roundings are enlarged some thousand times.
+                assert!((found / expected - 1.0).abs() < 1e-10, "{instructions}, {m:?}, {j}: {found}, {expected}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_scattering_matrix_of_one_sphere_is_pure() {
     // S11^2 = S12^2 + S33^2 + S34^2 (Bohren & Huffman 1983, section 4.4.1).
     let cosines: Vec<f64> = (0..=36).map(|i| (5.0 * f64::from(i)).to_radians().cos()).collect();
