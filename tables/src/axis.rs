@@ -22,10 +22,22 @@ pub enum Interpolation {
     /// The cubic in the coordinate through the four nearest nodes, two on either side but at the ends (of the value, or
     /// of its logarithm); through all nodes where there are fewer.
     Cubic,
+    /// In each pair of intervals, counted from the first node, the parabola through their three nodes (of the value, or
+    /// of its logarithm), so that it may have a kink at every other node; in a last interval without another, that
+    /// through the last three; through all nodes where there are fewer.
+    Parabolic,
     /// The value of a node holds from it up to the next node.
     Step,
     /// Only the nodes themselves can be asked for (months, names by index).
     Node,
+}
+
+impl Interpolation {
+    /// Whether more than two nodes may make a value.
+    #[must_use]
+    pub fn is_curved(self) -> bool {
+        matches!(self, Self::Cubic | Self::Parabolic)
+    }
 }
 
 /// What holds outside the nodes of an axis.
@@ -148,18 +160,19 @@ impl Axis {
     ///
     /// # Errors
     /// [`TableError::OutOfRange`] outside an axis that refuses, for a coordinate
-    /// between the nodes of an [`Interpolation::Node`] axis, and for NaN; [`TableError::Inconsistent`] for an
-    /// [`Interpolation::Cubic`] axis, whose values are made by more: see [`Axis::weights`].
+    /// between the nodes of an [`Interpolation::Node`] axis, and for NaN; [`TableError::Inconsistent`] for a
+    /// curved axis ([`Interpolation::is_curved`]), whose values are made by more nodes: see [`Axis::weights`].
     pub fn locate(&self, x: f64) -> Result<Option<Position>, TableError> {
-        match self.interpolation {
-            Interpolation::Cubic => Err(self.not_cubic()),
-            Interpolation::Linear | Interpolation::Step | Interpolation::Node => self.interval(x),
-        }
+        self.refuse_curved()?;
+        self.interval(x)
     }
 
-    /// What is said of a cubic axis where no more than two nodes make a value.
-    pub(crate) fn not_cubic(&self) -> TableError {
-        TableError::Inconsistent(format!("axis {:?} must not be cubic here", self.name))
+    /// Refuses a curved axis where two nodes make a value.
+    pub(crate) fn refuse_curved(&self) -> Result<(), TableError> {
+        if self.interpolation.is_curved() {
+            return Err(TableError::Inconsistent(format!("axis {:?} must be linear, a step or nodes", self.name)));
+        }
+        Ok(())
     }
 
     /// As [`Axis::locate`], of any axis.
@@ -194,7 +207,7 @@ impl Axis {
         }
         let (a, b) = (self.nodes[index], self.nodes[index + 1]);
         let fraction = match self.interpolation {
-            Interpolation::Linear | Interpolation::Cubic => (x - a) / (b - a),
+            Interpolation::Linear | Interpolation::Cubic | Interpolation::Parabolic => (x - a) / (b - a),
             Interpolation::Step => 0.0,
             Interpolation::Node if x == a => 0.0,
             Interpolation::Node => return Err(refuse()),
@@ -203,8 +216,8 @@ impl Axis {
     }
 
     /// The nodes that make the value at a coordinate, with weights that add up to 1: v(x) = sum of w_i v_i, or
-    /// ln v(x) = sum of w_i ln v_i on a logarithmic scale. Of a cubic the weights are Lagrange's,
-    /// w_i = product over j of (x - x_j) / (x_i - x_j), and one or two of them are negative. A node itself stands alone.
+    /// ln v(x) = sum of w_i ln v_i on a logarithmic scale. On a curved axis the weights are
+    /// Lagrange's, w_i = product over j of (x - x_j) / (x_i - x_j), and one or two of them are negative. A node itself stands alone.
     /// Empty where the rule outside is [`Outside::Zero`].
     ///
     /// # Errors
@@ -214,11 +227,13 @@ impl Axis {
         if fraction == 0.0 {
             return Ok(vec![(index, 1.0)]);
         }
-        if self.interpolation != Interpolation::Cubic {
-            return Ok(vec![(index, 1.0 - fraction), (index + 1, fraction)]);
-        }
-        let count = self.nodes.len().min(4);
-        let first = index.saturating_sub(1).min(self.nodes.len() - count);
+        let (first, count) = match self.interpolation {
+            Interpolation::Cubic => (index.saturating_sub(1), 4),
+            Interpolation::Parabolic => (index - index % 2, 3),
+            Interpolation::Linear | Interpolation::Step | Interpolation::Node => (index, 2),
+        };
+        let count = count.min(self.nodes.len());
+        let first = first.min(self.nodes.len() - count);
         let near = first..first + count;
         let weight = |i: usize| {
             let factor = |j: usize| (x - self.nodes[j]) / (self.nodes[i] - self.nodes[j]);
@@ -268,9 +283,13 @@ mod tests {
         for (rule, count, truth) in [
             (Interpolation::Linear, 5, (|x| 3.0 - x) as fn(f64) -> f64),
             (Interpolation::Cubic, 5, cubic),
-            // A parabola and a line through fewer nodes than four.
+            // A kink at the third of five nodes, where the second pair of intervals begins; four nodes have no second pair.
+            (Interpolation::Parabolic, 5, |x| if x < 2.0 { 4.0 - x * x } else { 4.0 - 2.0 * x + (x - 2.0) * x }),
+            (Interpolation::Parabolic, 4, |x| 3.0 - x + 0.5 * x * x),
+            // Parabolas, lines and a constant through fewer nodes.
             (Interpolation::Cubic, 3, |x| 3.0 - x + 0.5 * x * x),
             (Interpolation::Cubic, 2, |x| 3.0 - x),
+            (Interpolation::Parabolic, 2, |x| 3.0 - x),
             (Interpolation::Cubic, 1, |_| 3.0),
         ] {
             let axis = km(&nodes[..count]).between(rule);
@@ -287,7 +306,9 @@ mod tests {
             }
             assert!(axis.weights(-0.1).is_err() && axis.beyond(Outside::Zero).weights(-0.1).expect("zero").is_empty());
         }
-        assert!(km(&nodes).between(Interpolation::Cubic).locate(1.0).is_err(), "two nodes do not make a cubic");
+        for curved in [Interpolation::Cubic, Interpolation::Parabolic] {
+            assert!(km(&nodes).between(curved).locate(1.0).is_err(), "two nodes do not make a curve");
+        }
         let steps = km(&nodes).between(Interpolation::Step);
         assert_eq!(steps.weights(1.9).expect("inside"), [(1, 1.0)]);
     }

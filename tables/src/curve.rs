@@ -16,13 +16,11 @@ impl Curve {
     ///
     /// # Errors
     /// [`TableError::Inconsistent`] if the lengths differ, a value is not
-    /// finite, or a value on a logarithmic scale is not positive, and for a cubic axis.
+    /// finite, or a value on a logarithmic scale is not positive, and for an axis whose values more than two nodes make.
     pub fn new(axis: impl Into<Arc<Axis>>, scale: Scale, values: Vec<f64>) -> Result<Self, TableError> {
         let axis = axis.into();
         axis.validate()?;
-        if axis.interpolation == Interpolation::Cubic {
-            return Err(axis.not_cubic());
-        }
+        axis.refuse_curved()?;
         let fail = |text: String| Err(TableError::Inconsistent(format!("curve over {:?}: {text}", axis.name)));
         if axis.nodes.len() != values.len() {
             return fail(format!("{} values for {} nodes", values.len(), axis.nodes.len()));
@@ -106,8 +104,9 @@ impl Curve {
     /// The mean between two places of one interval with these values.
     fn mean(&self, a: f64, b: f64) -> f64 {
         match self.axis.interpolation {
-            Interpolation::Linear | Interpolation::Cubic => self.scale.mean(a, b),
             Interpolation::Step | Interpolation::Node => a,
+            // Of the curved rules there is no curve.
+            Interpolation::Linear | Interpolation::Cubic | Interpolation::Parabolic => self.scale.mean(a, b),
         }
     }
 }

@@ -12,8 +12,8 @@ pub const COSINE: (&str, &str) = ("cosine", "1");
 /// Wavelength in nm at which an amount of aerosol is stated.
 pub const REFERENCE_WAVELENGTH_NM: f64 = 550.0;
 
-/// By how much the integral of a phase function of cubics may miss 1.
-const CUBIC_INTEGRAL: f64 = 2e-3;
+/// By how much the integral of a phase function on curved axes may miss 1.
+const CURVED_INTEGRAL: f64 = 2e-3;
 
 /// The kinds of place that have an aerosol of their own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -250,7 +250,8 @@ impl Aerosol {
     /// `S_default_humidity` (percent) without axes, `S_extinction`, `S_scattering` (m^2) and `S_asymmetry` (1)
     /// over humidity and wavelength, `S_phase` (sr^-1) over humidity, wavelength and cosine, and, in every
     /// species or in none, `S_p12`, `S_p33`, `S_p34` (1) over the same. Further fields (errors) are allowed. Each axis of
-    /// the optics is linear or cubic and refuses outside.
+    /// the optics is linear, parabolic or cubic and refuses outside; the phase function is logarithmic if that of the
+    /// cosine is not linear, and else all are.
     ///
     /// # Errors
     /// [`TableError`] if the table is of another kind, lacks a field, or holds impossible values: a negative
@@ -303,14 +304,14 @@ impl Aerosol {
     }
 }
 
-/// An axis of the optics: in `unit`, linear or cubic, refusing outside.
+/// An axis of the optics: in `unit`, linear or curved, refusing outside.
 fn refusing_axis<'a>(table: &'a Table, name: &str, unit: &str) -> Result<&'a Axis, TableError> {
     let axis = table.axis(name)?;
-    let between = matches!(axis.interpolation, Interpolation::Linear | Interpolation::Cubic);
+    let between = axis.interpolation == Interpolation::Linear || axis.interpolation.is_curved();
     if axis.unit == unit && axis.outside == Outside::Error && between {
         return Ok(axis);
     }
-    Err(TableError::Inconsistent(format!("axis {name:?} must be in {unit:?}, linear or cubic, and refuse outside")))
+    Err(TableError::Inconsistent(format!("axis {name:?} must be in {unit:?}, not a step, and refuse outside")))
 }
 
 impl Species {
@@ -363,12 +364,13 @@ impl Species {
         if self.asymmetry.values.iter().any(|g| !(-1.0..=1.0).contains(g)) {
             return fail("an asymmetry is outside -1 to 1");
         }
-        // Lines between cosines are what is drawn from; cubics have to be of logarithms to stay above zero.
-        let cubic = cosine.interpolation == Interpolation::Cubic;
-        if cubic != (self.phase.scale == Scale::Logarithmic) {
-            return fail("a phase function is logarithmic if the cosine is cubic, and only then");
+        // Curves have to be of logarithms to stay above zero; lines are drawn from as they are.
+        let curved = cosine.interpolation.is_curved();
+        let others = self.wavelength.interpolation.is_curved() || self.humidity.interpolation.is_curved();
+        if curved != (self.phase.scale == Scale::Logarithmic) || others && !curved {
+            return fail("a phase function is logarithmic if the cosine is not linear, and else linear throughout");
         }
-        let allowed = if cubic { CUBIC_INTEGRAL } else { 1e-5 };
+        let allowed = if curved { CURVED_INTEGRAL } else { 1e-5 };
         for (i, phase) in self.phase.values.chunks(cosine.nodes.len()).enumerate() {
             let (_, off) = self.angles.phase(self.row(&[(i, 1.0)], &self.phase));
             // Not a number is no integral either.
@@ -385,7 +387,7 @@ impl Species {
     }
 
     /// Cosines of the angles of the phase function and the scattering matrix, from -1 (backward) to 1 (forward): those
-    /// of the table, and more where its axis is cubic ([`Angles`]).
+    /// of the table, and more where its axis is not linear ([`Angles`]).
     #[must_use]
     pub fn cosines(&self) -> &[f64] {
         self.angles.cosines()
@@ -411,7 +413,7 @@ impl Species {
     }
 
     /// Extinction and scattering cross-section per particle in m^2, by the rules of their fields and axes: logarithms,
-    /// in our tables linear in humidity (percent) and cubic in wavelength (nm).
+    /// in our tables linear in humidity (percent) and parabolic in wavelength (nm).
     ///
     /// # Errors
     /// [`TableError::OutOfRange`] outside either axis.

@@ -1,22 +1,22 @@
 //! The angles of the tables.
 
-/// Runs of angles: up to this angle in degrees, by this step. Dense ahead, where coarse particles scatter as a power of
-/// the angle, and towards 180 degrees, for the glory; within a degree they need not be finer than what the sun's disc
-/// smooths. `study aerosol-tables` has the cost in radiance.
-const RUNS: [(f64, f64); 13] = [
-    (0.1, 0.0125),
-    (0.3, 0.025),
-    (0.6, 0.05),
-    (1.2, 0.075),
-    (2.0, 0.1),
-    (5.0, 0.25),
-    (10.0, 0.25),
-    (30.0, 0.5),
-    (60.0, 1.0),
-    (132.0, 2.0),
-    (170.0, 1.0),
-    (177.0, 0.5),
-    (180.0, 0.25),
+/// Runs of angles: up to this angle in degrees, in so many steps. Dense ahead, where coarse particles scatter as a power of
+/// the angle, in the rainbow of clear particles, and towards 180 degrees, for the glory; within a degree they need not be
+/// finer than what the sun's disc smooths. `study aerosol-tables` has the cost in radiance.
+const RUNS: [(f64, u32); 13] = [
+    (0.3, 10),
+    (0.6, 6),
+    (1.2, 10),
+    (2.0, 8),
+    (4.4, 16),
+    (10.0, 14),
+    (16.0, 10),
+    (30.0, 14),
+    (60.0, 12),
+    (132.0, 18),
+    (170.0, 38),
+    (176.0, 12),
+    (180.0, 24),
 ];
 
 /// The angles of the tables in degrees, from 180 down to 0, so that their cosines grow.
@@ -30,8 +30,8 @@ pub fn degrees() -> Vec<f64> {
 pub fn finer(parts: u32) -> Vec<f64> {
     let mut angles = vec![0.0];
     let mut from = 0.0;
-    for (to, step) in RUNS {
-        let steps = parts * ((to - from) / step).round() as u32;
+    for (to, steps) in RUNS {
+        let steps = parts * steps;
         angles.extend((1..=steps).map(|i| from + (to - from) * f64::from(i) / f64::from(steps)));
         from = to;
     }
