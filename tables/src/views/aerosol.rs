@@ -326,8 +326,8 @@ impl Species {
             return Err(TableError::Inconsistent(format!("axis {altitude:?} must be zero outside")));
         }
         let over = [humidity.as_str(), WAVELENGTH.0, COSINE.0];
-        let has = |end: &&str| table.fields.iter().any(|field| field.name == full(end));
-        let matrix = if suffix::MATRIX.iter().any(|end| has(&end)) {
+        let has = |end: &str| table.fields.iter().any(|field| field.name == full(end));
+        let matrix = if suffix::MATRIX.iter().any(|end| has(end)) {
             let [p12, p33, p34] = suffix::MATRIX.map(|end| table.field(&full(end), "1", &over).cloned());
             Some([p12?, p33?, p34?])
         } else {
@@ -373,8 +373,7 @@ impl Species {
         let allowed = if curved { CURVED_INTEGRAL } else { 1e-5 };
         for (i, phase) in self.phase.values.chunks(cosine.nodes.len()).enumerate() {
             let (_, off) = self.angles.phase(self.row(&[(i, 1.0)], &self.phase));
-            // Not a number is no integral either.
-            if phase.iter().any(|p| *p < 0.0) || !(off.abs() <= allowed) {
+            if phase.iter().any(|p| *p < 0.0) || off.is_nan() || off.abs() > allowed {
                 return fail("a phase function is negative or its integral is not 1");
             }
         }

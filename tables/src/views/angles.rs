@@ -127,7 +127,8 @@ mod tests {
             };
             ((0..=10_000).map(off).fold(0.0, f64::max), missed)
         };
-        let (lines, cubics) = (worst(Interpolation::Linear, Scale::Linear), worst(Interpolation::Cubic, Scale::Logarithmic));
+        let (lines, cubics) =
+            (worst(Interpolation::Linear, Scale::Linear), worst(Interpolation::Cubic, Scale::Logarithmic));
         // Lines between nodes are off by h^2 P'' / 8, those between a quarter of the steps by a sixteenth of it; the rest
         // is of the cubics.
         assert!(lines.0 > 1e-2 && cubics.0 < lines.0 / 8.0, "{lines:?}, {cubics:?}");

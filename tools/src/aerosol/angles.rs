@@ -1,5 +1,8 @@
 //! The angles of the tables.
 
+use tables::views::COSINE;
+use tables::{Axis, Interpolation, TableError};
+
 /// Runs of angles: up to this angle in degrees, in so many steps. Dense ahead, where coarse particles scatter as a power of
 /// the angle, in the rainbow of clear particles, and towards 180 degrees, for the glory; within a degree they need not be
 /// finer than what the sun's disc smooths. `study aerosol-tables` has the cost in radiance.
@@ -37,6 +40,14 @@ pub fn finer(parts: u32) -> Vec<f64> {
     }
     angles.reverse();
     angles
+}
+
+/// The axis of the tables: cosines of their angles, cubics between them.
+///
+/// # Errors
+/// As [`Axis::new`], which takes these cosines.
+pub fn axis() -> Result<Axis, TableError> {
+    Ok(Axis::new(COSINE.0, COSINE.1, cosines(&degrees()))?.between(Interpolation::Cubic))
 }
 
 /// Cosines of angles in degrees, -1, 0 and 1 exactly.

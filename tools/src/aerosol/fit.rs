@@ -267,14 +267,12 @@ fn nelder_mead<const N: usize>(start: [f64; N], cost: impl Fn([f64; N]) -> f64) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::aerosol::angles::{cosines, degrees};
-    use tables::views::{Angles, COSINE};
-    use tables::{Axis, Interpolation};
+    use crate::aerosol::angles;
+    use tables::views::Angles;
 
     /// A function at the angles at which the tables' are given, its integral 1.
     fn made_whole(function: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
-        let axis = Axis::new(COSINE.0, COSINE.1, cosines(&degrees())).expect("sound");
-        let angles = Angles::new(&axis.between(Interpolation::Cubic)).expect("whole");
+        let angles = Angles::new(&angles::axis().expect("sound")).expect("whole");
         let (phase, _) = angles.phase(angles.cosines().iter().map(|&mu| function(mu)).collect());
         (angles.cosines().to_vec(), phase)
     }

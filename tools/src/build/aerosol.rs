@@ -1,23 +1,24 @@
 //! Tables of aerosol: one for each source and biome, and those of one's own.
 
 use super::{field, two_digits};
-use crate::aerosol::AerosolError;
-use crate::aerosol::angles::{cosines, degrees};
 use crate::aerosol::bulk::Rule;
 use crate::aerosol::library::Library;
 use crate::aerosol::material::Substances;
 use crate::aerosol::mixture::{Mixed, species};
 use crate::aerosol::recipe::{Inputs, Part, Recipe, SpeciesRecipe, particles, recipe};
+use crate::aerosol::{AerosolError, angles};
 use crate::raw::RawData;
 use tables::units::WAVELENGTH_RANGE_NM;
 use tables::views::{AerosolSource, Angles, Biome, COSINE, Origin, WAVELENGTH, suffix};
 use tables::{Axis, Field, Interpolation, Kind, Precision, Provenance, Scale, Table, TableError, Tolerance};
 
-/// Step of the wavelength axis, nm: every other node is one of the refractive indices, which are linear between theirs.
+/// Step of the wavelength axis, nm: every other node is one of the refractive indices, which are linear between theirs,
+/// and so have kinks where one parabola ends and the next begins.
 const WAVELENGTH_STEP: f64 = 25.0;
 
-/// Of the intervals between wavelengths, the interpolation is measured in every how many.
-const MEASURED: usize = 4;
+/// Of the intervals between wavelengths, the interpolation is measured in every how many; odd, for first and second
+/// halves of parabolas.
+const MEASURED: usize = 5;
 
 /// The optics of every kind of particles of some recipes.
 pub(crate) struct Prepared {
@@ -53,13 +54,18 @@ pub(super) fn provenance(raw: &RawData, source: AerosolSource) -> Vec<Provenance
     provenance
 }
 
-/// Computes the optics of every kind of particles of these recipes.
-pub(crate) fn prepare(substances: Substances<'_>, recipes: &[Recipe], rule: &Rule) -> Result<Prepared, TableError> {
+/// The axis of wavelengths.
+pub(crate) fn wavelengths() -> Result<Axis, TableError> {
     let (low, high) = WAVELENGTH_RANGE_NM;
     let count = ((high - low) / WAVELENGTH_STEP) as usize + 1;
-    let axis = Axis::uniform(WAVELENGTH.0, WAVELENGTH.1, low, WAVELENGTH_STEP, count)?.between(Interpolation::Cubic);
+    Ok(Axis::uniform(WAVELENGTH.0, WAVELENGTH.1, low, WAVELENGTH_STEP, count)?.between(Interpolation::Parabolic))
+}
+
+/// Computes the optics of every kind of particles of these recipes.
+pub(crate) fn prepare(substances: Substances<'_>, recipes: &[Recipe], rule: &Rule) -> Result<Prepared, TableError> {
+    let axis = wavelengths()?;
     let between: Vec<f64> = axis.nodes.windows(2).step_by(MEASURED).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
-    let angles = cosines(&degrees());
+    let angles = angles::axis()?.nodes;
     let compute = || -> Result<(Library, Library), AerosolError> {
         let all = particles(substances, recipes, |s| &s.humidities)?;
         let nodes = Library::new(substances, all, &axis.nodes, &angles, rule)?;
@@ -124,8 +130,7 @@ pub(crate) fn table(
     made: &Recipe,
     provenance: Vec<Provenance>,
 ) -> Result<Table, TableError> {
-    let cosines = prepared.nodes.cosines();
-    let cosine = Axis::new(COSINE.0, COSINE.1, cosines.to_vec())?.between(Interpolation::Cubic);
+    let cosine = angles::axis()?;
     let angles = Angles::new(&cosine)?;
     let mut axes = vec![prepared.axis.clone(), cosine];
     let mut fields = Vec::new();
@@ -312,9 +317,7 @@ mod tests {
         let all = AerosolSource::ALL.into_iter().flat_map(|s| Biome::ALL.map(|b| recipe(inputs, s, b)));
         let recipes = all.collect::<Result<Vec<_>, _>>().expect("recipes");
         let rows: usize = recipes.iter().flat_map(|r| &r.species).map(|s| s.humidities.len()).sum();
-        let (low, high) = WAVELENGTH_RANGE_NM;
-        let wavelengths = ((high - low) / WAVELENGTH_STEP) as usize + 1;
-        let angles = degrees().len();
+        let (wavelengths, angles) = (wavelengths().expect("sound").nodes.len(), angles::degrees().len());
         let bytes = 4 * rows * wavelengths * 4 * angles;
         // Phase functions and matrices; 10 MB less what all other numbers take.
         assert!(bytes < 9_500_000, "{bytes} bytes");

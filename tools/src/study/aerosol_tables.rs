@@ -7,7 +7,7 @@
 //! interpolation: nodes and truth are averages of their own.
 
 use super::{Part, Results, StudyError};
-use crate::aerosol::angles::{cosines, degrees, finer};
+use crate::aerosol::angles::{axis, cosines, degrees, finer};
 use crate::aerosol::bulk::Rule;
 use crate::aerosol::library::Library;
 use crate::aerosol::mixture::{Mixed, species};
@@ -18,7 +18,7 @@ use crate::raw::RawData;
 use std::f64::consts::PI;
 use std::path::Path;
 use tables::units::WAVELENGTH_RANGE_NM;
-use tables::views::{Angles, AerosolSource, Biome, COSINE, Rayleigh, StandardAtmosphere, WAVELENGTH};
+use tables::views::{AerosolSource, Angles, Biome, COSINE, Rayleigh, StandardAtmosphere, WAVELENGTH};
 use tables::{Axis, Interpolation, Kind, Scale, TableError};
 
 /// Names of the parts.
@@ -43,9 +43,6 @@ const STEPS: [(f64, Between); 9] = [
     (25.0, PARABOLAS),
     (12.5, LINES),
 ];
-
-/// That of the tables.
-const STEP: (f64, Between) = (25.0, PARABOLAS);
 
 /// Where a step is tried: half-way between nodes, of which other steps need some as well.
 fn tried(step: f64) -> Vec<f64> {
@@ -399,8 +396,9 @@ pub(super) fn compare(raw_dir: &Path) -> Result<Results, StudyError> {
     let mut parts = vec![part(PARTS[0], rows)?];
 
     let fine = finer(FINE as u32);
-    let places = places(STEP.0, STEP.1.0, &ANGLES_AT)?;
-    let count = wavelengths(STEP.0, STEP.1.0)?.nodes.len();
+    let of_tables = build::aerosol::wavelengths()?;
+    let count = of_tables.nodes.len();
+    let places = ANGLES_AT.into_iter().map(|nm| Place::on(&of_tables, nm)).collect::<Result<Vec<_>, _>>()?;
     let needed = places.iter().flat_map(Place::needed).collect();
     let skies = Skies::new(&raw, &recipes, needed, &fine)?;
     let set = |(stride, (interpolation, _)): (usize, Between)| -> Result<Angles, TableError> {
@@ -410,8 +408,9 @@ pub(super) fn compare(raw_dir: &Path) -> Result<Results, StudyError> {
     let (mut rows, mut by_angle) = (Vec::new(), vec![("scattering_angle_deg".to_owned(), fine)]);
     for (stride, between) in SETS {
         let angles = set((stride, between))?;
-        let found =
-            |species: &[Scatterer], p: &Place| skies.at(species, p.nm).at_every(stride, &angles, between.1, &skies.cosines);
+        let found = |species: &[Scatterer], p: &Place| {
+            skies.at(species, p.nm).at_every(stride, &angles, between.1, &skies.cosines)
+        };
         let size = megabytes(&recipes, count, angles.nodes());
         let label = format!("{} angles, {}", angles.nodes(), rule(between));
         let (row, line) = Row::new(label, size, &skies, &skies.judge(&places, &found));
@@ -431,10 +430,10 @@ pub(super) fn compare(raw_dir: &Path) -> Result<Results, StudyError> {
         rows.push(row);
     }
     // What the tables say, from their own nodes.
-    let angles = set((FINE, CUBICS))?;
+    let angles = Angles::new(&axis()?)?;
     let together = |species: &[Scatterer], place: &Place| {
-        let between = skies.spectral(species, place, STEP.1.1);
-        between.at_every(FINE, &angles, CUBICS.1, &skies.cosines).with_digits(24)
+        let between = skies.spectral(species, place, Scale::Logarithmic);
+        between.at_every(FINE, &angles, Scale::Logarithmic, &skies.cosines).with_digits(24)
     };
     let errors = skies.judge(&places, &together);
     let (row, line) = Row::new("the tables, all together".into(), size, &skies, &errors);
