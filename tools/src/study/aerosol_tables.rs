@@ -101,14 +101,16 @@ impl From<&Mixed> for Scatterer {
 }
 
 impl Scatterer {
-    /// What a table says between wavelengths whose nodes have these weights.
+    /// What a table says between wavelengths whose nodes have these weights. Logarithms do not keep the integral 1, which
+    /// is made right in the end: by lines, which have too much of it, it is the mean of the nodes'.
     fn between(near: &[(&Self, f64)], cosines: &[f64], scale: Scale) -> Self {
         let mix = |scale: Scale, value: &dyn Fn(&Self) -> f64| -> f64 {
             scale.back(near.iter().map(|(node, weight)| weight * scale.of(value(node))).sum())
         };
         let mut phase: Vec<f64> = (0..cosines.len()).map(|i| mix(scale, &|node| node.phase[i])).collect();
-        let whole = tables::views::integral(cosines, &phase);
-        phase.iter_mut().for_each(|value| *value /= whole);
+        let integral = |phase: &[f64]| tables::views::integral(cosines, phase);
+        let factor = mix(Scale::Linear, &|node| integral(&node.phase)) / integral(&phase);
+        phase.iter_mut().for_each(|value| *value *= factor);
         let ratio = |j: usize| (0..cosines.len()).map(|i| mix(Scale::Linear, &|node| node.ratios[j][i])).collect();
         let scattering = mix(Scale::Logarithmic, &|node| node.scattering);
         Self { scattering, phase, ratios: [ratio(0), ratio(1), ratio(2)] }
