@@ -424,9 +424,9 @@ pub(super) fn compare(raw_dir: &Path) -> Result<Results, StudyError> {
         }
     }
     let size = megabytes(&recipes, count, degrees().len());
-    for digits in [11, 24] {
+    for (digits, bits) in [(11, 16.0), (24, 32.0)] {
         let errors = skies.judge(&places, &|species, place| skies.at(species, place.nm).with_digits(digits));
-        let size = size * f64::from(digits + 5) / 32.0;
+        let size = size * bits / 32.0;
         let (row, line) = Row::new(format!("{digits} binary digits"), size, &skies, &errors);
         remarks.push(line);
         rows.push(row);
