@@ -19,10 +19,25 @@ pub enum Spacing {
 pub enum Interpolation {
     /// Linear in the coordinate (of the value, or of its logarithm: see [`crate::Scale`]).
     Linear,
+    /// The cubic in the coordinate through the four nearest nodes, two on either side but at the ends (of the value, or
+    /// of its logarithm); through all nodes where there are fewer.
+    Cubic,
+    /// In each pair of intervals, counted from the first node, the parabola through their three nodes (of the value, or
+    /// of its logarithm), so that it may have a kink at every other node; in a last interval without another, that
+    /// through the last three; through all nodes where there are fewer.
+    Parabolic,
     /// The value of a node holds from it up to the next node.
     Step,
     /// Only the nodes themselves can be asked for (months, names by index).
     Node,
+}
+
+impl Interpolation {
+    /// Whether more than two nodes may make a value.
+    #[must_use]
+    pub fn is_curved(self) -> bool {
+        matches!(self, Self::Cubic | Self::Parabolic)
+    }
 }
 
 /// What holds outside the nodes of an axis.
@@ -140,12 +155,28 @@ impl Axis {
         if self.nodes.len() > 1 { (high - low) / (self.nodes.len() - 1) as f64 } else { 1.0 }
     }
 
-    /// Finds a coordinate; `None` where the rule outside is [`Outside::Zero`].
+    /// Finds a coordinate between the two nodes that make its value; `None` where the rule outside is
+    /// [`Outside::Zero`].
     ///
     /// # Errors
     /// [`TableError::OutOfRange`] outside an axis that refuses, for a coordinate
-    /// between the nodes of an [`Interpolation::Node`] axis, and for NaN.
+    /// between the nodes of an [`Interpolation::Node`] axis, and for NaN; [`TableError::Inconsistent`] for a
+    /// curved axis ([`Interpolation::is_curved`]), whose values are made by more nodes: see [`Axis::weights`].
     pub fn locate(&self, x: f64) -> Result<Option<Position>, TableError> {
+        self.refuse_curved()?;
+        self.interval(x)
+    }
+
+    /// Refuses a curved axis where two nodes make a value.
+    pub(crate) fn refuse_curved(&self) -> Result<(), TableError> {
+        if self.interpolation.is_curved() {
+            return Err(TableError::Inconsistent(format!("axis {:?} must be linear, a step or nodes", self.name)));
+        }
+        Ok(())
+    }
+
+    /// As [`Axis::locate`], of any axis.
+    fn interval(&self, x: f64) -> Result<Option<Position>, TableError> {
         let (low, high) = self.range();
         let refuse =
             || TableError::OutOfRange { axis: self.name.clone(), value: x, low, high, unit: self.unit.clone() };
@@ -176,12 +207,39 @@ impl Axis {
         }
         let (a, b) = (self.nodes[index], self.nodes[index + 1]);
         let fraction = match self.interpolation {
-            Interpolation::Linear => (x - a) / (b - a),
+            Interpolation::Linear | Interpolation::Cubic | Interpolation::Parabolic => (x - a) / (b - a),
             Interpolation::Step => 0.0,
             Interpolation::Node if x == a => 0.0,
             Interpolation::Node => return Err(refuse()),
         };
         Ok(Some(Position { index, fraction }))
+    }
+
+    /// The nodes that make the value at a coordinate, with weights that add up to 1: v(x) = sum of w_i v_i, or
+    /// ln v(x) = sum of w_i ln v_i on a logarithmic scale. On a curved axis the weights are
+    /// Lagrange's, w_i = product over j of (x - x_j) / (x_i - x_j), and one or two of them are negative. A node itself stands alone.
+    /// Empty where the rule outside is [`Outside::Zero`].
+    ///
+    /// # Errors
+    /// [`TableError::OutOfRange`] as [`Axis::locate`].
+    pub fn weights(&self, x: f64) -> Result<Vec<(usize, f64)>, TableError> {
+        let Some(Position { index, fraction }) = self.interval(x)? else { return Ok(Vec::new()) };
+        if fraction == 0.0 {
+            return Ok(vec![(index, 1.0)]);
+        }
+        let (first, count) = match self.interpolation {
+            Interpolation::Cubic => (index.saturating_sub(1), 4),
+            Interpolation::Parabolic => (index - index % 2, 3),
+            Interpolation::Linear | Interpolation::Step | Interpolation::Node => (index, 2),
+        };
+        let count = count.min(self.nodes.len());
+        let first = first.min(self.nodes.len() - count);
+        let near = first..first + count;
+        let weight = |i: usize| {
+            let factor = |j: usize| (x - self.nodes[j]) / (self.nodes[i] - self.nodes[j]);
+            near.clone().filter(|&j| j != i).map(factor).product::<f64>()
+        };
+        Ok(near.clone().map(|i| (i, weight(i))).collect())
     }
 }
 
@@ -216,6 +274,43 @@ mod tests {
             let back = axis.nodes[index] + fraction * (next - axis.nodes[index]);
             assert!((back - x).abs() < 1e-14, "{x} came back as {back}");
         }
+    }
+
+    #[test]
+    fn weights_rebuild_what_their_rule_is_exact_for() {
+        let nodes = [0.0, 0.5, 2.0, 7.0, 7.5];
+        let cubic = |x: f64| 3.0 - x + 0.5 * x * x - 0.1 * x * x * x;
+        for (rule, count, truth) in [
+            (Interpolation::Linear, 5, (|x| 3.0 - x) as fn(f64) -> f64),
+            (Interpolation::Cubic, 5, cubic),
+            // A kink at the third of five nodes, where the second pair of intervals begins; four nodes have no second pair.
+            (Interpolation::Parabolic, 5, |x| if x < 2.0 { 4.0 - x * x } else { 4.0 - 2.0 * x + (x - 2.0) * x }),
+            (Interpolation::Parabolic, 4, |x| 3.0 - x + 0.5 * x * x),
+            // Parabolas, lines and a constant through fewer nodes.
+            (Interpolation::Cubic, 3, |x| 3.0 - x + 0.5 * x * x),
+            (Interpolation::Cubic, 2, |x| 3.0 - x),
+            (Interpolation::Parabolic, 2, |x| 3.0 - x),
+            (Interpolation::Cubic, 1, |_| 3.0),
+        ] {
+            let axis = km(&nodes[..count]).between(rule);
+            for i in 0..=100 {
+                let x = axis.range().1 * f64::from(i) / 100.0;
+                let weights = axis.weights(x).expect("inside");
+                let value: f64 = weights.iter().map(|(i, w)| w * truth(nodes[*i])).sum();
+                let whole: f64 = weights.iter().map(|(_, w)| w).sum();
+                // Rounding of weights of up to some tens.
+                assert!((value - truth(x)).abs() < 1e-12 && (whole - 1.0).abs() < 1e-13, "{rule:?}, {count}: {x}");
+            }
+            for (i, &x) in axis.nodes.iter().enumerate() {
+                assert_eq!(axis.weights(x).expect("inside"), [(i, 1.0)], "a node stands for itself");
+            }
+            assert!(axis.weights(-0.1).is_err() && axis.beyond(Outside::Zero).weights(-0.1).expect("zero").is_empty());
+        }
+        for curved in [Interpolation::Cubic, Interpolation::Parabolic] {
+            assert!(km(&nodes).between(curved).locate(1.0).is_err(), "two nodes do not make a curve");
+        }
+        let steps = km(&nodes).between(Interpolation::Step);
+        assert_eq!(steps.weights(1.9).expect("inside"), [(1, 1.0)]);
     }
 
     #[test]

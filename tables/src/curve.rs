@@ -16,10 +16,11 @@ impl Curve {
     ///
     /// # Errors
     /// [`TableError::Inconsistent`] if the lengths differ, a value is not
-    /// finite, or a value on a logarithmic scale is not positive.
+    /// finite, or a value on a logarithmic scale is not positive, and for an axis whose values more than two nodes make.
     pub fn new(axis: impl Into<Arc<Axis>>, scale: Scale, values: Vec<f64>) -> Result<Self, TableError> {
         let axis = axis.into();
         axis.validate()?;
+        axis.refuse_curved()?;
         let fail = |text: String| Err(TableError::Inconsistent(format!("curve over {:?}: {text}", axis.name)));
         if axis.nodes.len() != values.len() {
             return fail(format!("{} values for {} nodes", values.len(), axis.nodes.len()));
@@ -103,13 +104,32 @@ impl Curve {
     /// The mean between two places of one interval with these values.
     fn mean(&self, a: f64, b: f64) -> f64 {
         match self.axis.interpolation {
-            Interpolation::Linear => self.scale.mean(a, b),
             Interpolation::Step | Interpolation::Node => a,
+            // Of the curved rules there is no curve.
+            Interpolation::Linear | Interpolation::Cubic | Interpolation::Parabolic => self.scale.mean(a, b),
         }
     }
 }
 
 impl Scale {
+    /// What is interpolated: the value, or its logarithm.
+    #[must_use]
+    pub fn of(self, value: f64) -> f64 {
+        match self {
+            Self::Linear => value,
+            Self::Logarithmic => value.ln(),
+        }
+    }
+
+    /// The value of what was interpolated.
+    #[must_use]
+    pub fn back(self, interpolated: f64) -> f64 {
+        match self {
+            Self::Linear => interpolated,
+            Self::Logarithmic => interpolated.exp(),
+        }
+    }
+
     /// The value at fraction `f` of the way from `a` to `b`.
     #[must_use]
     pub fn between(self, a: f64, b: f64, f: f64) -> f64 {
@@ -189,5 +209,6 @@ mod tests {
         assert!(Curve::new(axis(), Scale::Linear, vec![1.0]).is_err());
         assert!(Curve::new(axis(), Scale::Linear, vec![1.0, f64::INFINITY]).is_err());
         assert!(Curve::new(axis(), Scale::Logarithmic, vec![1.0, 0.0]).is_err());
+        assert!(Curve::new(axis().between(Interpolation::Cubic), Scale::Linear, vec![1.0, 0.0]).is_err());
     }
 }

@@ -151,6 +151,25 @@ fn a_header_that_lies_is_refused_without_trusting_it() {
 }
 
 #[test]
+fn every_rule_comes_back_and_an_unknown_one_is_refused() {
+    for (rule, name) in [
+        (Interpolation::Linear, "linear"),
+        (Interpolation::Parabolic, "parabolic"),
+        (Interpolation::Cubic, "cubic"),
+        (Interpolation::Step, "step"),
+        (Interpolation::Node, "node"),
+    ] {
+        let mut table = sample();
+        table.axes[0].interpolation = rule;
+        assert_eq!(file::decode(&file::encode(&table).expect("valid")).expect("sound"), table);
+        let renamed = with_header(|text| text.replacen("\"linear\"", &format!("\"{name}\""), 1));
+        assert_eq!(file::decode(&renamed).expect("a rule").axes[0].interpolation, rule);
+    }
+    let error = file::decode(&with_header(|text| text.replacen("\"linear\"", "\"quintic\"", 1))).expect_err("no rule");
+    assert!(matches!(&error, TableError::Header(text) if text.contains("quintic")), "{error}");
+}
+
+#[test]
 fn values_that_are_not_finite_are_neither_written_nor_read() {
     let mut table = sample();
     table.fields[0].values[1] = f64::NAN;

@@ -320,7 +320,7 @@ impl Column {
     /// Phase function in sr^-1 at each cosine of the scattering angle; `None` for ozone, which does not scatter.
     ///
     /// Of molecules P = 3 / (16 pi (1 + 2 gamma)) ((1 + 3 gamma) + (1 - gamma) cos^2) (Bucholtz 1995, equation 12,
-    /// normalised to 1); of aerosol linear in the cosine between those of the table.
+    /// normalised to 1); of aerosol linear in the cosine between those of [`views::Species::cosines`].
     ///
     /// # Errors
     /// As [`Column::cross_sections`], and for a cosine outside -1..=1.

@@ -1,5 +1,6 @@
 //! Aerosol: what there is in each biome, how much of it where, and how it scatters and absorbs.
 
+use super::angles::Angles;
 use super::{WAVELENGTH, bounded, scalar};
 use crate::{Axis, Curve, Field, Interpolation, Kind, Outside, Scale, Table, TableError, excerpt};
 use std::fmt;
@@ -8,11 +9,11 @@ use std::sync::Arc;
 /// The axis of the cosine of the scattering angle, from -1 (backward) to 1 (forward).
 pub const COSINE: (&str, &str) = ("cosine", "1");
 
-/// The axis of the cosine for the ratios of the scattering matrix.
-pub const MATRIX_COSINE: (&str, &str) = ("matrix_cosine", "1");
-
 /// Wavelength in nm at which an amount of aerosol is stated.
 pub const REFERENCE_WAVELENGTH_NM: f64 = 550.0;
+
+/// By how much the integral of a phase function on curved axes may miss 1.
+const CURVED_INTEGRAL: f64 = 2e-3;
 
 /// The kinds of place that have an aerosol of their own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -168,13 +169,13 @@ pub struct Optics {
     /// Asymmetry parameter g, the mean cosine of the scattering angle, from the Mie series.
     pub asymmetry: f64,
     /// Phase function in sr^-1 at each of [`Species::cosines`]; taken as linear in the cosine between them, its
-    /// integral over the sphere is 1.
+    /// integral over the sphere is 1 ([`Angles::phase`]).
     pub phase: Vec<f64>,
 }
 
 /// Scattering matrix of a species at one humidity and wavelength, relative to the phase function P11: with I, Q, U, V
 /// referred to the plane of scattering, randomly oriented mirror-symmetric particles have P12 = P21, P34 = -P43, and
-/// spheres P22 = P11, P44 = P33 (Bohren & Huffman 1983, sections 4.4.4 and 13.6). At each of [`Species::matrix_cosines`].
+/// spheres P22 = P11, P44 = P33 (Bohren & Huffman 1983, sections 4.4.4 and 13.6). At each of [`Species::cosines`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Matrix {
     /// P12 / P11: the degree of linear polarisation of scattered natural light is its negative.
@@ -197,12 +198,13 @@ pub struct Species {
     pub default_humidity_percent: f64,
     wavelength: Arc<Axis>,
     humidity: Axis,
-    cosine: Arc<Axis>,
+    angles: Arc<Angles>,
     extinction: Field,
     scattering: Field,
     asymmetry: Field,
+    /// The phase function, or its logarithm.
     phase: Field,
-    matrix: Option<(Axis, [Field; 3])>,
+    matrix: Option<[Field; 3]>,
 }
 
 /// The aerosol of a biome after a source, or somebody's own.
@@ -232,7 +234,7 @@ pub mod suffix {
     pub const ASYMMETRY: &str = "_asymmetry";
     /// Field over humidity, wavelength and cosine, sr^-1.
     pub const PHASE: &str = "_phase";
-    /// Fields P12, P33 and P34 over P11, over humidity, wavelength and the cosine of the matrix, 1; all or none.
+    /// Fields P12, P33 and P34 over P11, over humidity, wavelength and cosine, 1; all or none.
     pub const MATRIX: [&str; 3] = ["_p12", "_p33", "_p34"];
 }
 
@@ -246,9 +248,10 @@ impl Aerosol {
     /// Settings `biome` and `source`, or `source` (`own`) and `name`; axes `wavelength` (nm) and `cosine` (1, from -1 to 1); for each species S the
     /// axes `S_altitude` (m), `S_humidity` (percent) and the fields `S_number_density` (m^-3) over altitude,
     /// `S_default_humidity` (percent) without axes, `S_extinction`, `S_scattering` (m^2) and `S_asymmetry` (1)
-    /// over humidity and wavelength, `S_phase` (sr^-1) over humidity, wavelength and cosine. If there is the axis
-    /// `matrix_cosine` (1, from -1 to 1), also `S_p12`, `S_p33`, `S_p34` (1) over humidity, wavelength and it. Further
-    /// fields (errors) are allowed.
+    /// over humidity and wavelength, `S_phase` (sr^-1) over humidity, wavelength and cosine, and, in every
+    /// species or in none, `S_p12`, `S_p33`, `S_p34` (1) over the same. Further fields (errors) are allowed. Each axis of
+    /// the optics is linear, parabolic or cubic and refuses outside; the phase function is logarithmic if that of the
+    /// cosine is not linear, and else all are.
     ///
     /// # Errors
     /// [`TableError`] if the table is of another kind, lacks a field, or holds impossible values: a negative
@@ -258,9 +261,9 @@ impl Aerosol {
         table.expect_kind(Kind::Aerosol)?;
         let origin = Origin::from_table(table)?;
         let names = table.fields.iter().filter_map(|field| field.name.strip_suffix(suffix::NUMBER_DENSITY));
-        let shared = |(name, unit)| refusing_axis(table, name, unit).map(|axis| Arc::new(axis.clone()));
-        let (wavelength, cosine) = (shared(WAVELENGTH)?, shared(COSINE)?);
-        let species = names.map(|name| Species::from_table(table, name, &wavelength, &cosine));
+        let wavelength = Arc::new(refusing_axis(table, WAVELENGTH.0, WAVELENGTH.1)?.clone());
+        let angles = Arc::new(Angles::new(table.axis(COSINE.0)?)?);
+        let species = names.map(|name| Species::from_table(table, name, &wavelength, &angles));
         let species = species.collect::<Result<Vec<_>, _>>()?;
         if species.is_empty() {
             return Err(TableError::Inconsistent("no species".into()));
@@ -301,17 +304,18 @@ impl Aerosol {
     }
 }
 
-/// An axis of the optics: in `unit`, linear, refusing outside.
+/// An axis of the optics: in `unit`, linear or curved, refusing outside.
 fn refusing_axis<'a>(table: &'a Table, name: &str, unit: &str) -> Result<&'a Axis, TableError> {
     let axis = table.axis(name)?;
-    if axis.unit == unit && axis.outside == Outside::Error && axis.interpolation == Interpolation::Linear {
+    let between = axis.interpolation == Interpolation::Linear || axis.interpolation.is_curved();
+    if axis.unit == unit && axis.outside == Outside::Error && between {
         return Ok(axis);
     }
-    Err(TableError::Inconsistent(format!("axis {name:?} must be in {unit:?}, linear, and refuse outside")))
+    Err(TableError::Inconsistent(format!("axis {name:?} must be in {unit:?}, not a step, and refuse outside")))
 }
 
 impl Species {
-    fn from_table(table: &Table, name: &str, wavelength: &Arc<Axis>, cosine: &Arc<Axis>) -> Result<Self, TableError> {
+    fn from_table(table: &Table, name: &str, wavelength: &Arc<Axis>, angles: &Arc<Angles>) -> Result<Self, TableError> {
         let full = |end: &str| format!("{name}{end}");
         let (altitude, humidity) = (full(suffix::ALTITUDE), full(suffix::HUMIDITY));
         let spectral = |end: &str, unit: &str| -> Result<Field, TableError> {
@@ -321,10 +325,11 @@ impl Species {
         if density.axis().outside != Outside::Zero {
             return Err(TableError::Inconsistent(format!("axis {altitude:?} must be zero outside")));
         }
-        let matrix = if table.axis(MATRIX_COSINE.0).is_ok() {
-            let over = [humidity.as_str(), WAVELENGTH.0, MATRIX_COSINE.0];
+        let over = [humidity.as_str(), WAVELENGTH.0, COSINE.0];
+        let has = |end: &str| table.fields.iter().any(|field| field.name == full(end));
+        let matrix = if suffix::MATRIX.iter().any(|end| has(end)) {
             let [p12, p33, p34] = suffix::MATRIX.map(|end| table.field(&full(end), "1", &over).cloned());
-            Some((refusing_axis(table, MATRIX_COSINE.0, MATRIX_COSINE.1)?.clone(), [p12?, p33?, p34?]))
+            Some([p12?, p33?, p34?])
         } else {
             None
         };
@@ -334,23 +339,19 @@ impl Species {
             default_humidity_percent: scalar(table, &full(suffix::DEFAULT_HUMIDITY), "percent")?,
             wavelength: Arc::clone(wavelength),
             humidity: refusing_axis(table, &humidity, "percent")?.clone(),
-            cosine: Arc::clone(cosine),
+            angles: Arc::clone(angles),
             extinction: spectral(suffix::EXTINCTION, "m^2")?,
             scattering: spectral(suffix::SCATTERING, "m^2")?,
             asymmetry: spectral(suffix::ASYMMETRY, "1")?,
-            phase: table.field(&full(suffix::PHASE), "sr^-1", &[&humidity, WAVELENGTH.0, COSINE.0])?.clone(),
+            phase: table.field(&full(suffix::PHASE), "sr^-1", &over)?.clone(),
             matrix,
         };
-        species.validate()?;
+        species.validate(table.axis(COSINE.0)?)?;
         Ok(species)
     }
 
-    fn validate(&self) -> Result<(), TableError> {
+    fn validate(&self, cosine: &Axis) -> Result<(), TableError> {
         let fail = |text: &str| Err(TableError::Inconsistent(format!("species {:?}: {text}", self.name)));
-        let whole = |cosine: &Axis| cosine.range() == (-1.0, 1.0);
-        if !whole(&self.cosine) || self.matrix.as_ref().is_some_and(|(cosine, _)| !whole(cosine)) {
-            return fail("cosines must reach from -1 to 1");
-        }
         if self.humidity.locate(self.default_humidity_percent).is_err() {
             return fail("the default humidity is not on its axis");
         }
@@ -363,12 +364,20 @@ impl Species {
         if self.asymmetry.values.iter().any(|g| !(-1.0..=1.0).contains(g)) {
             return fail("an asymmetry is outside -1 to 1");
         }
-        for phase in self.phase.values.chunks(self.cosine.nodes.len()) {
-            if phase.iter().any(|p| *p < 0.0) || (integral(&self.cosine.nodes, phase) - 1.0).abs() > 1e-5 {
+        // Curves have to be of logarithms to stay above zero; lines are drawn from as they are.
+        let curved = cosine.interpolation.is_curved();
+        let others = self.wavelength.interpolation.is_curved() || self.humidity.interpolation.is_curved();
+        if curved != (self.phase.scale == Scale::Logarithmic) || others && !curved {
+            return fail("a phase function is logarithmic if the cosine is not linear, and else linear throughout");
+        }
+        let allowed = if curved { CURVED_INTEGRAL } else { 1e-5 };
+        for (i, phase) in self.phase.values.chunks(cosine.nodes.len()).enumerate() {
+            let (_, off) = self.angles.phase(self.row(&[(i, 1.0)], &self.phase));
+            if phase.iter().any(|p| *p < 0.0) || off.is_nan() || off.abs() > allowed {
                 return fail("a phase function is negative or its integral is not 1");
             }
         }
-        let mut ratios = self.matrix.iter().flat_map(|(_, fields)| fields).flat_map(|field| &field.values);
+        let mut ratios = self.matrix.iter().flatten().flat_map(|field| &field.values);
         // Rounding to single precision.
         if ratios.any(|ratio| ratio.abs() > 1.0 + 2e-7) {
             return fail("a ratio of the scattering matrix is outside -1 to 1");
@@ -376,16 +385,11 @@ impl Species {
         Ok(())
     }
 
-    /// Cosines of the angles of the phase function, from -1 (backward) to 1 (forward).
+    /// Cosines of the angles of the phase function and the scattering matrix, from -1 (backward) to 1 (forward): those
+    /// of the table, and more where its axis is not linear ([`Angles`]).
     #[must_use]
     pub fn cosines(&self) -> &[f64] {
-        &self.cosine.nodes
-    }
-
-    /// Cosines of the angles of the scattering matrix, from -1 (backward) to 1 (forward); `None` if the table has none.
-    #[must_use]
-    pub fn matrix_cosines(&self) -> Option<&[f64]> {
-        self.matrix.as_ref().map(|(cosine, _)| cosine.nodes.as_slice())
+        self.angles.cosines()
     }
 
     /// Lowest and highest relative humidity in percent; equal if the species does not take up water here.
@@ -407,8 +411,8 @@ impl Species {
         self.number_density_m3.total()
     }
 
-    /// Extinction and scattering cross-section per particle in m^2, their logarithms linear in humidity (percent)
-    /// and wavelength (nm).
+    /// Extinction and scattering cross-section per particle in m^2, by the rules of their fields and axes: logarithms,
+    /// in our tables linear in humidity (percent) and parabolic in wavelength (nm).
     ///
     /// # Errors
     /// [`TableError::OutOfRange`] outside either axis.
@@ -418,44 +422,51 @@ impl Species {
         Ok((extinction, mix(&nodes, &self.scattering).min(extinction)))
     }
 
-    /// Optics at a relative humidity (percent) and wavelength (nm): cross-sections as
-    /// [`Species::cross_sections`]; asymmetry and phase function linear in both.
+    /// Optics at a relative humidity (percent) and wavelength (nm), as [`Species::cross_sections`].
     ///
     /// # Errors
     /// [`TableError::OutOfRange`] outside either axis.
     pub fn optics(&self, humidity_percent: f64, wavelength_nm: f64) -> Result<Optics, TableError> {
         let (extinction_m2, scattering_m2) = self.cross_sections(humidity_percent, wavelength_nm)?;
         let nodes = self.nodes(humidity_percent, wavelength_nm)?;
-        let phase = mix_rows(&nodes, &self.phase, self.cosine.nodes.len());
-        Ok(Optics { extinction_m2, scattering_m2, asymmetry: mix(&nodes, &self.asymmetry), phase })
+        let asymmetry = mix(&nodes, &self.asymmetry).clamp(-1.0, 1.0);
+        let (phase, _) = self.angles.phase(self.row(&nodes, &self.phase));
+        Ok(Optics { extinction_m2, scattering_m2, asymmetry, phase })
     }
 
-    /// The scattering matrix at a relative humidity (percent) and wavelength (nm), its ratios linear in both;
-    /// `None` if the table has none.
+    /// The scattering matrix at a relative humidity (percent) and wavelength (nm), its ratios as
+    /// [`Species::cross_sections`] and kept within -1 to 1; `None` if the table has none.
     ///
     /// # Errors
     /// [`TableError::OutOfRange`] outside either axis.
     pub fn matrix(&self, humidity_percent: f64, wavelength_nm: f64) -> Result<Option<Matrix>, TableError> {
         let nodes = self.nodes(humidity_percent, wavelength_nm)?;
-        Ok(self.matrix.as_ref().map(|(cosine, fields)| {
-            let [p12, p33, p34] = fields.each_ref().map(|field| mix_rows(&nodes, field, cosine.nodes.len()));
+        Ok(self.matrix.as_ref().map(|fields| {
+            let ratio = |field| self.row(&nodes, field).into_iter().map(|ratio| ratio.clamp(-1.0, 1.0)).collect();
+            let [p12, p33, p34] = fields.each_ref().map(ratio);
             Matrix { p12, p33, p34 }
         }))
     }
 
     /// Rows of humidity and wavelength around a place, with their weights.
     fn nodes(&self, humidity_percent: f64, wavelength_nm: f64) -> Result<Vec<(usize, f64)>, TableError> {
-        let near = |axis: &Axis, x: f64| -> Result<Vec<(usize, f64)>, TableError> {
-            let nowhere = || TableError::Inconsistent("humidity and wavelength axes must refuse outside".into());
-            let at = axis.locate(x)?.ok_or_else(nowhere)?;
-            let both = [(at.index, 1.0 - at.fraction), (at.index + 1, at.fraction)];
-            Ok(both.into_iter().filter(|(_, weight)| *weight > 0.0).collect())
-        };
-        let wavelengths = near(&self.wavelength, wavelength_nm)?;
+        let wavelengths = self.wavelength.weights(wavelength_nm)?;
+        let humidities = self.humidity.weights(humidity_percent)?;
         let row = |h: usize, w: usize| h * self.wavelength.nodes.len() + w;
-        let humidities = near(&self.humidity, humidity_percent)?;
         let all = humidities.iter().flat_map(|(h, a)| wavelengths.iter().map(move |(w, b)| (row(*h, *w), a * b)));
         Ok(all.collect())
+    }
+
+    /// A field over cosines at rows with these weights, at each of [`Species::cosines`].
+    fn row(&self, nodes: &[(usize, f64)], field: &Field) -> Vec<f64> {
+        let length = self.angles.nodes();
+        let mut sums = vec![0.0; length];
+        for (row, weight) in nodes {
+            for (sum, value) in sums.iter_mut().zip(&field.values[row * length..(row + 1) * length]) {
+                *sum += weight * field.scale.of(*value);
+            }
+        }
+        self.angles.between(field.scale, &sums)
     }
 }
 
@@ -463,30 +474,8 @@ impl Species {
 fn mix(nodes: &[(usize, f64)], field: &Field) -> f64 {
     match *nodes {
         [(row, _)] => field.values[row],
-        _ if field.scale == Scale::Logarithmic => {
-            nodes.iter().map(|(row, weight)| weight * field.values[*row].ln()).sum::<f64>().exp()
-        }
-        _ => nodes.iter().map(|(row, weight)| weight * field.values[*row]).sum(),
+        _ => field.scale.back(nodes.iter().map(|(row, weight)| weight * field.scale.of(field.values[*row])).sum()),
     }
-}
-
-/// The weighted mean of a field over a further axis of so many nodes, at each of these.
-fn mix_rows(nodes: &[(usize, f64)], field: &Field, length: usize) -> Vec<f64> {
-    let mut sums = vec![0.0; length];
-    for (row, weight) in nodes {
-        for (sum, value) in sums.iter_mut().zip(&field.values[row * length..(row + 1) * length]) {
-            *sum += weight * value;
-        }
-    }
-    sums
-}
-
-/// Integral over the sphere of a function linear between cosines: 2 pi times the trapezoidal sum. The rule by
-/// which phase functions are normalised.
-#[must_use]
-pub fn integral(cosines: &[f64], values: &[f64]) -> f64 {
-    let cells = cosines.windows(2).zip(values.windows(2));
-    std::f64::consts::PI * cells.map(|(c, v)| (c[1] - c[0]) * (v[0] + v[1])).sum::<f64>()
 }
 
 #[cfg(test)]

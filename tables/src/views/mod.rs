@@ -7,15 +7,16 @@
 
 mod aerosol;
 mod air;
+mod angles;
 mod ground;
 mod light;
 mod ozone;
 
 pub use aerosol::{
-    Aerosol, AerosolSource, Biome, COSINE, MATRIX_COSINE, Matrix, Optics, Origin, REFERENCE_WAVELENGTH_NM, Species,
-    integral, suffix,
+    Aerosol, AerosolSource, Biome, COSINE, Matrix, Optics, Origin, REFERENCE_WAVELENGTH_NM, Species, suffix,
 };
 pub use air::{Rayleigh, StandardAtmosphere};
+pub use angles::{Angles, integral};
 pub use ground::GroundAlbedo;
 pub use light::{Observer, Sun};
 pub use ozone::{OzoneCrossSection, OzoneLayers, OzoneProfile, OzoneProfiles};

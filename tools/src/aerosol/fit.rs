@@ -267,13 +267,18 @@ fn nelder_mead<const N: usize>(start: [f64; N], cost: impl Fn([f64; N]) -> f64) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::aerosol::angles::{cosines, degrees, normalise};
+    use crate::aerosol::angles;
+    use tables::views::Angles;
+
+    /// A function at the angles at which the tables' are given, its integral 1.
+    fn made_whole(function: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
+        let angles = Angles::new(&angles::axis().expect("sound")).expect("whole");
+        let (phase, _) = angles.phase(angles.cosines().iter().map(|&mu| function(mu)).collect());
+        (angles.cosines().to_vec(), phase)
+    }
 
     fn sampled(fit: Fit) -> (Vec<f64>, Vec<f64>) {
-        let cosines = cosines(&degrees());
-        let mut phase: Vec<f64> = cosines.iter().map(|&mu| fit.phase(mu)).collect();
-        normalise(&cosines, &mut phase);
-        (cosines, phase)
+        made_whole(|mu| fit.phase(mu))
     }
 
     #[test]
@@ -333,13 +338,8 @@ mod tests {
 
     #[test]
     fn fits_are_minima() {
-        let cosines = cosines(&degrees());
         // Something that none of the forms contains.
-        let shape = |mu: f64| (3.0 * mu).exp() + 0.3 * mu * mu + 0.1;
-        // 2 pi times its integral: 2 sinh(3) / 3 + 0.2 + 0.2.
-        let whole = 2.0 * PI * (2.0 * 3.0_f64.sinh() / 3.0 + 0.4);
-        let mut phase: Vec<f64> = cosines.iter().map(|&mu| shape(mu) / whole).collect();
-        normalise(&cosines, &mut phase);
+        let (cosines, phase) = made_whole(|mu| (3.0 * mu).exp() + 0.3 * mu * mu + 0.1);
         let observed = Observed::new(&cosines, &phase);
         let square = |fit: Fit| observed.square(&fit);
         let single = observed.fit(Form::FittedSingle).expect("a fit");

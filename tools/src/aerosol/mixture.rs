@@ -1,7 +1,6 @@
 //! External mixtures: each particle of one material, shares by number.
 
 use super::AerosolError;
-use super::angles::normalise;
 use super::bulk::{Bulk, QuadratureError};
 use super::library::Library;
 use super::material::Substances;
@@ -18,12 +17,10 @@ pub struct Mixed {
     pub absorption: f64,
     /// Asymmetry parameter, 1.
     pub asymmetry: f64,
-    /// Phase function, sr^-1, normalised by the rule of [`super::angles`]; empty where no angles were asked for.
+    /// Phase function, sr^-1; empty where no angles were asked for.
     pub phase: Vec<f64>,
     /// P12, P33 and P34 over the phase function, 1, at the same angles.
     pub ratios: [Vec<f64>; 3],
-    /// The integral of the phase function over the sphere before it was normalised, less 1.
-    pub correction: f64,
     /// Bound on the error of the average over sizes.
     pub error: QuadratureError,
 }
@@ -55,14 +52,13 @@ pub fn mix(parts: &[(&Bulk, f64)], cosines: &[f64]) -> Mixed {
             *change += weight * value * bulk.error.phase;
         }
     }
-    let [mut phase, ratios @ ..] = matrix;
+    let [phase, ratios @ ..] = matrix;
     let ratios = ratios.map(|element| element.iter().zip(&phase).map(|(e, p)| e / p).collect());
     let error = QuadratureError {
         cross_sections: mean(&|b| b.extinction * b.error.cross_sections) / extinction,
         misplaced: mean(&|b| b.scattering * b.error.misplaced) / scattering,
         phase: changes.iter().zip(&phase).map(|(change, p)| change / p).fold(0.0, f64::max),
     };
-    let correction = if cosines.is_empty() { 0.0 } else { normalise(cosines, &mut phase) };
     Mixed {
         extinction,
         scattering,
@@ -70,7 +66,6 @@ pub fn mix(parts: &[(&Bulk, f64)], cosines: &[f64]) -> Mixed {
         asymmetry: mean(&|b| b.scattering * b.asymmetry) / scattering,
         phase,
         ratios,
-        correction,
         error,
     }
 }

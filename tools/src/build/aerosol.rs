@@ -1,23 +1,24 @@
 //! Tables of aerosol: one for each source and biome, and those of one's own.
 
 use super::{field, two_digits};
-use crate::aerosol::AerosolError;
-use crate::aerosol::angles::{MATRIX_STRIDE, cosines, degrees};
 use crate::aerosol::bulk::Rule;
 use crate::aerosol::library::Library;
 use crate::aerosol::material::Substances;
 use crate::aerosol::mixture::{Mixed, species};
 use crate::aerosol::recipe::{Inputs, Part, Recipe, SpeciesRecipe, particles, recipe};
+use crate::aerosol::{AerosolError, angles};
 use crate::raw::RawData;
 use tables::units::WAVELENGTH_RANGE_NM;
-use tables::views::{AerosolSource, Biome, COSINE, MATRIX_COSINE, Origin, WAVELENGTH, suffix};
-use tables::{Axis, Field, Kind, Precision, Provenance, Scale, Table, TableError, Tolerance};
+use tables::views::{AerosolSource, Angles, Biome, COSINE, Origin, WAVELENGTH, suffix};
+use tables::{Axis, Field, Interpolation, Kind, Precision, Provenance, Scale, Table, TableError, Tolerance};
 
-/// Step of the wavelength axis, nm: every other node is one of the refractive indices, which are linear between theirs.
+/// Step of the wavelength axis, nm: every other node is one of the refractive indices, which are linear between theirs,
+/// and so have kinks where one parabola ends and the next begins.
 const WAVELENGTH_STEP: f64 = 25.0;
 
-/// Of the intervals between wavelengths, the interpolation is measured in every how many.
-const MEASURED: usize = 4;
+/// Of the intervals between wavelengths, the interpolation is measured in every how many; odd, for first and second
+/// halves of parabolas.
+const MEASURED: usize = 5;
 
 /// The optics of every kind of particles of some recipes.
 pub(crate) struct Prepared {
@@ -53,13 +54,18 @@ pub(super) fn provenance(raw: &RawData, source: AerosolSource) -> Vec<Provenance
     provenance
 }
 
-/// Computes the optics of every kind of particles of these recipes.
-pub(crate) fn prepare(substances: Substances<'_>, recipes: &[Recipe], rule: &Rule) -> Result<Prepared, TableError> {
+/// The axis of wavelengths.
+pub(crate) fn wavelengths() -> Result<Axis, TableError> {
     let (low, high) = WAVELENGTH_RANGE_NM;
     let count = ((high - low) / WAVELENGTH_STEP) as usize + 1;
-    let axis = Axis::uniform(WAVELENGTH.0, WAVELENGTH.1, low, WAVELENGTH_STEP, count)?;
+    Ok(Axis::uniform(WAVELENGTH.0, WAVELENGTH.1, low, WAVELENGTH_STEP, count)?.between(Interpolation::Parabolic))
+}
+
+/// Computes the optics of every kind of particles of these recipes.
+pub(crate) fn prepare(substances: Substances<'_>, recipes: &[Recipe], rule: &Rule) -> Result<Prepared, TableError> {
+    let axis = wavelengths()?;
     let between: Vec<f64> = axis.nodes.windows(2).step_by(MEASURED).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
-    let angles = cosines(&degrees());
+    let angles = angles::axis()?.nodes;
     let compute = || -> Result<(Library, Library), AerosolError> {
         let all = particles(substances, recipes, |s| &s.humidities)?;
         let nodes = Library::new(substances, all, &axis.nodes, &angles, rule)?;
@@ -96,24 +102,25 @@ struct Halves {
     ratios: f64,
 }
 
-fn halves(nodes: &[Mixed], exact: &[Mixed]) -> Halves {
+fn halves(prepared: &Prepared, nodes: &[Mixed], exact: &[Mixed]) -> Result<Halves, TableError> {
     let mut worst = Halves::default();
-    for (pair, exact) in nodes.windows(2).step_by(MEASURED).zip(exact) {
-        let (a, b) = (&pair[0], &pair[1]);
-        let relative = |found: f64, exact: f64| (found / exact - 1.0).abs();
-        let extinction = relative((a.extinction * b.extinction).sqrt(), exact.extinction);
-        let scattering = relative((a.scattering * b.scattering).sqrt(), exact.scattering);
-        worst.cross_sections = worst.cross_sections.max(extinction).max(scattering);
-        worst.asymmetry = worst.asymmetry.max((0.5 * (a.asymmetry + b.asymmetry) - exact.asymmetry).abs());
-        for ((a, b), exact) in a.phase.iter().zip(&b.phase).zip(&exact.phase) {
-            worst.phase = worst.phase.max(relative(0.5 * (a + b), *exact));
-        }
-        let ratios = |mixed: &'_ Mixed| mixed.ratios.concat();
-        for ((a, b), exact) in ratios(a).iter().zip(ratios(b)).zip(ratios(exact)) {
-            worst.ratios = worst.ratios.max((0.5 * (a + b) - exact).abs());
+    for (&nm, exact) in prepared.halves.wavelengths_nm().iter().zip(exact) {
+        let near: Vec<(&Mixed, f64)> = prepared.axis.weights(nm)?.iter().map(|&(i, w)| (&nodes[i], w)).collect();
+        let found = |scale: Scale, value: &dyn Fn(&Mixed) -> f64| -> f64 {
+            scale.back(near.iter().map(|(mixed, weight)| weight * scale.of(value(mixed))).sum())
+        };
+        let relative = |value: &dyn Fn(&Mixed) -> f64| (found(Scale::Logarithmic, value) / value(exact) - 1.0).abs();
+        let absolute = |value: &dyn Fn(&Mixed) -> f64| (found(Scale::Linear, value) - value(exact)).abs();
+        let cross_sections = relative(&|m| m.extinction).max(relative(&|m| m.scattering));
+        worst.cross_sections = worst.cross_sections.max(cross_sections);
+        worst.asymmetry = worst.asymmetry.max(absolute(&|m| m.asymmetry));
+        for i in 0..exact.phase.len() {
+            worst.phase = worst.phase.max(relative(&|m| m.phase[i]));
+            let ratios = (0..3).map(|j| absolute(&|m| m.ratios[j][i]));
+            worst.ratios = ratios.fold(worst.ratios, f64::max);
         }
     }
-    worst
+    Ok(worst)
 }
 
 /// The table of a recipe, whose optics are prepared.
@@ -123,13 +130,9 @@ pub(crate) fn table(
     made: &Recipe,
     provenance: Vec<Provenance>,
 ) -> Result<Table, TableError> {
-    let cosines = prepared.nodes.cosines();
-    let fewer = cosines.iter().copied().step_by(MATRIX_STRIDE).collect();
-    let mut axes = vec![
-        prepared.axis.clone(),
-        Axis::new(COSINE.0, COSINE.1, cosines.to_vec())?,
-        Axis::new(MATRIX_COSINE.0, MATRIX_COSINE.1, fewer)?,
-    ];
+    let cosine = angles::axis()?;
+    let angles = Angles::new(&cosine)?;
+    let mut axes = vec![prepared.axis.clone(), cosine];
     let mut fields = Vec::new();
     let (mut quadrature, mut misplaced, mut angle_error, mut correction) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
     let mut unmet = Vec::new();
@@ -144,16 +147,18 @@ pub(crate) fn table(
                 columns.asymmetry.push(one.asymmetry);
                 columns.phase.extend(&one.phase);
                 for (all, ratio) in columns.ratios.iter_mut().zip(&one.ratios) {
-                    all.extend(ratio.iter().copied().step_by(MATRIX_STRIDE));
+                    all.extend(ratio);
                 }
                 columns.cross_section_error.push(one.error.cross_sections);
                 columns.misplaced.push(one.error.misplaced);
                 columns.phase_error.push(one.error.phase);
-                columns.largest_correction = columns.largest_correction.max(one.correction.abs());
+                let logarithms: Vec<f64> = one.phase.iter().map(|p| p.ln()).collect();
+                let (_, missed) = angles.phase(angles.between(Scale::Logarithmic, &logarithms));
+                columns.largest_correction = columns.largest_correction.max(missed.abs());
             }
             if humidity == recipe.default_humidity {
                 let exact = species(substances, &prepared.halves, recipe, humidity).map_err(refused)?;
-                between = halves(&mixed, &exact);
+                between = halves(prepared, &mixed, &exact)?;
             }
         }
         quadrature = columns.cross_section_error.iter().copied().fold(quadrature, f64::max);
@@ -267,9 +272,9 @@ fn add_species(
         // Beside the rounding of storage, backward amplitudes of large spheres pass on a few last bits of sines.
         tolerance: Tolerance { relative: 1e-6, absolute: 0.0 },
         interpolation_error: Some(two_digits(between.phase)),
+        scale: Scale::Logarithmic,
         ..field(&full(suffix::PHASE), "sr^-1", &over, 1e-3, columns.phase)
     });
-    let over = [humidity.as_str(), WAVELENGTH.0, MATRIX_COSINE.0];
     for (end, values) in suffix::MATRIX.into_iter().zip(columns.ratios) {
         fields.push(Field {
             // Ratios near zero are differences.
@@ -312,10 +317,8 @@ mod tests {
         let all = AerosolSource::ALL.into_iter().flat_map(|s| Biome::ALL.map(|b| recipe(inputs, s, b)));
         let recipes = all.collect::<Result<Vec<_>, _>>().expect("recipes");
         let rows: usize = recipes.iter().flat_map(|r| &r.species).map(|s| s.humidities.len()).sum();
-        let (low, high) = WAVELENGTH_RANGE_NM;
-        let wavelengths = ((high - low) / WAVELENGTH_STEP) as usize + 1;
-        let angles = degrees().len();
-        let bytes = 4 * rows * wavelengths * (angles + 3 * angles.div_ceil(MATRIX_STRIDE));
+        let (wavelengths, angles) = (wavelengths().expect("sound").nodes.len(), angles::degrees().len());
+        let bytes = 4 * rows * wavelengths * 4 * angles;
         // Phase functions and matrices; 10 MB less what all other numbers take.
         assert!(bytes < 9_500_000, "{bytes} bytes");
     }

@@ -7,7 +7,7 @@ use super::repair::Judged;
 use super::sheet::{Block, Column, Sheet, Species, round};
 use super::{aerosol, limits, smooth};
 use tables::units::DOBSON_UNIT_M2;
-use tables::views::{self, AerosolSource, Biome, integral, suffix};
+use tables::views::{self, AerosolSource, Angles, Biome, COSINE, integral, suffix};
 use tables::{Axis, Field, Interpolation, Kind, Table};
 
 impl Judged for Table {
@@ -244,9 +244,9 @@ fn phases(table: &Table) -> Vec<Finding> {
     for (name, _) in species_of(table) {
         let full = |end: &str| format!("{name}{end}");
         let of = |end: &str| field(table, &full(end));
-        if let (Some(cosine), Some(phase), Some(g)) = (axis(table, "cosine"), of(suffix::PHASE), of(suffix::ASYMMETRY))
+        if let (Some(cosine), Some(phase), Some(g)) = (axis(table, COSINE.0), of(suffix::PHASE), of(suffix::ASYMMETRY))
         {
-            findings.extend(phase_law(&cosine.nodes, phase, g).map(|finding| finding.of(name)));
+            findings.extend(phase_law(cosine, phase, g).map(|finding| finding.of(name)));
         }
         if let (Some(humidity), Some(default)) = (axis(table, &full(suffix::HUMIDITY)), of(suffix::DEFAULT_HUMIDITY)) {
             let on_axis = |value: &&f64| humidity.nodes.iter().any(|node| (node - **value).abs() < 1e-9);
@@ -272,7 +272,7 @@ fn matrix_laws(table: &Table, name: &str) -> Vec<Finding> {
     /// The least that P12 and P34 reach at some angle and wavelength; in the tables of `data/` it is 0.24.
     const LEAST: f64 = 0.02;
     let of = |end: &str| field(table, &format!("{name}{end}"));
-    let Some(cosine) = axis(table, tables::views::MATRIX_COSINE.0) else { return Vec::new() };
+    let Some(cosine) = axis(table, COSINE.0) else { return Vec::new() };
     let [Some(p12), Some(p33), Some(p34)] = suffix::MATRIX.map(of) else { return Vec::new() };
     let rows = |field: &'_ Field| field.values.chunks(cosine.nodes.len()).map(<[f64]>::to_vec).collect::<Vec<_>>();
     let mut findings = Vec::new();
@@ -325,13 +325,19 @@ fn quadrature_laws(table: &Table) -> Vec<Finding> {
 }
 
 /// The worst phase function of a species.
-fn phase_law(cosines: &[f64], phase: &Field, asymmetry: &Field) -> Option<Finding> {
+fn phase_law(cosine: &Axis, phase: &Field, asymmetry: &Field) -> Option<Finding> {
+    /// What cubics between angles leave.
+    const INTEGRAL: f64 = 1e-3;
+    let angles = Angles::new(cosine).ok()?;
+    let cosines = angles.cosines();
     let mut worst: Option<(f64, Finding)> = None;
-    for (p, g) in phase.values.chunks(cosines.len()).zip(&asymmetry.values) {
-        let whole = integral(cosines, p);
+    for (p, g) in phase.values.chunks(cosine.nodes.len()).zip(&asymmetry.values) {
+        let nodes: Vec<f64> = p.iter().map(|p| phase.scale.of(*p)).collect();
+        let (p, missed) = angles.phase(angles.between(phase.scale, &nodes));
+        let whole = 1.0 + missed;
         let forward: Vec<f64> = cosines.iter().zip(p).map(|(c, p)| c * p).collect();
-        let mean = integral(cosines, &forward) / whole;
-        let (off, finding) = if (whole - 1.0).abs() > 1e-4 {
+        let mean = integral(cosines, &forward);
+        let (off, finding) = if missed.abs() > INTEGRAL {
             let found = format!("an integral over the sphere of {}", round(whole));
             (10.0 + (whole - 1.0).abs(), Finding::new(Check::Identity, &[&phase.name], found, "1"))
         } else {

@@ -3,10 +3,11 @@
 //! The radiance of an optically thin sky is proportional to the sum over what scatters of tau_s P_s(theta), tau_s the
 //! optical depth of scattering, averaged over the sun's disc. Its error is what interpolation changes in this sum over the
 //! sum, molecules included; each biome has its own amount and humidity. In a thicker sky, light that is scattered again has
-//! forgotten most of the error of a phase function.
+//! forgotten most of the error of a phase function. What the averages over sizes are not known to counts as an error of
+//! interpolation: nodes and truth are averages of their own.
 
 use super::{Part, Results, StudyError};
-use crate::aerosol::angles::{MATRIX_STRIDE, cosines, degrees, finer, normalise};
+use crate::aerosol::angles::{axis, cosines, degrees, finer};
 use crate::aerosol::bulk::Rule;
 use crate::aerosol::library::Library;
 use crate::aerosol::mixture::{Mixed, species};
@@ -17,27 +18,70 @@ use crate::raw::RawData;
 use std::f64::consts::PI;
 use std::path::Path;
 use tables::units::WAVELENGTH_RANGE_NM;
-use tables::views::{AerosolSource, Biome, Rayleigh, StandardAtmosphere};
-use tables::{Kind, TableError};
+use tables::views::{AerosolSource, Angles, Biome, COSINE, Rayleigh, StandardAtmosphere, WAVELENGTH};
+use tables::{Axis, Interpolation, Kind, Scale, TableError};
 
 /// Names of the parts.
 pub(super) const PARTS: [&str; 3] = ["wavelengths", "angles", "by-angle"];
 
-/// Steps of the wavelength axis in nm, whether the logarithm of phase functions is interpolated too, and where that is tried:
-/// half-way between nodes that other steps need as well.
-pub(super) const STEPS: [(f64, bool, &[f64]); 4] = [
-    (50.0, false, &[325.0, 525.0]),
-    (25.0, false, &[312.5, 337.5, 512.5, 537.5]),
-    (25.0, true, &[312.5, 337.5, 512.5, 537.5]),
-    (12.5, false, &[306.25, 318.75, 331.25, 506.25]),
+/// A rule between nodes, and the scale of the phase function.
+type Between = (Interpolation, Scale);
+const LINES: Between = (Interpolation::Linear, Scale::Linear);
+const LINES_OF_LOGARITHMS: Between = (Interpolation::Linear, Scale::Logarithmic);
+const PARABOLAS: Between = (Interpolation::Parabolic, Scale::Logarithmic);
+const CUBICS: Between = (Interpolation::Cubic, Scale::Logarithmic);
+
+/// Steps of the wavelength axis in nm and the rules between its nodes.
+const STEPS: [(f64, Between); 9] = [
+    (50.0, LINES),
+    (50.0, LINES_OF_LOGARITHMS),
+    (50.0, CUBICS),
+    (25.0, LINES),
+    (25.0, LINES_OF_LOGARITHMS),
+    (25.0, CUBICS),
+    (25.0, (Interpolation::Parabolic, Scale::Linear)),
+    (25.0, PARABOLAS),
+    (12.5, LINES),
 ];
 
-/// Wavelengths in nm at which sets of angles are tried.
-const ANGLES_AT: [f64; 2] = [300.0, 500.0];
+/// Where a step is tried: half-way between nodes, of which other steps need some as well.
+fn tried(step: f64) -> Vec<f64> {
+    let places: &[f64] = if step < 25.0 { &[300.0, 312.5, 500.0] } else { &[300.0, 325.0, 500.0, 525.0] };
+    let mut tried: Vec<f64> = places.iter().map(|nm| (nm / step).floor() * step + 0.5 * step).collect();
+    tried.dedup();
+    tried
+}
+
+/// A wavelength in nm, and the nodes in nm from which a table makes it, with their weights.
+struct Place {
+    nm: f64,
+    nodes: Vec<(f64, f64)>,
+}
+
+impl Place {
+    fn on(axis: &Axis, nm: f64) -> Result<Self, TableError> {
+        let nodes = axis.weights(nm)?.into_iter().map(|(i, weight)| (axis.nodes[i], weight)).collect();
+        Ok(Self { nm, nodes })
+    }
+
+    /// All wavelengths of which the optics are needed.
+    fn needed(&self) -> impl Iterator<Item = f64> {
+        self.nodes.iter().map(|(node, _)| *node).chain([self.nm])
+    }
+}
+
+/// Wavelengths in nm at which sets of angles are tried: those between nodes, so that wavelengths and angles are tried
+/// together as well.
+const ANGLES_AT: [f64; 2] = [312.5, 512.5];
 
 /// Parts of an interval of the tables' angles in which the truth is computed, and of these every so manieth in a set.
-const FINE: usize = 4;
-pub(super) const STRIDES: [usize; 3] = [8, 4, 2];
+const FINE: usize = 8;
+const SETS: [(usize, Between); 6] =
+    [(16, LINES), (16, CUBICS), (FINE, LINES), (FINE, PARABOLAS), (FINE, CUBICS), (4, LINES)];
+
+/// Columns of the error by angle: sets of the tables' angles, and all interpolations together.
+pub(super) const BY_ANGLE: [(&str, &str); 3] =
+    [("lines", "lines between the angles of the tables"), ("cubics", "cubics"), ("together", "all together")];
 
 /// Angular radius of the sun, degrees.
 const SUN: f64 = 0.2666;
@@ -57,38 +101,39 @@ impl From<&Mixed> for Scatterer {
 }
 
 impl Scatterer {
-    /// What a table says half-way between two wavelengths.
-    fn half_way(a: &Self, b: &Self, cosines: &[f64], logarithmic: bool) -> Self {
-        let mean = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect::<Vec<_>>();
-        let phase = if logarithmic {
-            let mut phase: Vec<f64> = a.phase.iter().zip(&b.phase).map(|(a, b)| (a * b).sqrt()).collect();
-            let whole = tables::views::integral(cosines, &phase);
-            phase.iter_mut().for_each(|value| *value /= whole);
-            phase
-        } else {
-            mean(&a.phase, &b.phase)
+    /// What a table says between wavelengths whose nodes have these weights. Logarithms do not keep the integral 1, which
+    /// is made right in the end: by lines, which have too much of it, it is the mean of the nodes'.
+    fn between(near: &[(&Self, f64)], cosines: &[f64], scale: Scale) -> Self {
+        let mix = |scale: Scale, value: &dyn Fn(&Self) -> f64| -> f64 {
+            scale.back(near.iter().map(|(node, weight)| weight * scale.of(value(node))).sum())
         };
-        let ratios = std::array::from_fn(|i| mean(&a.ratios[i], &b.ratios[i]));
-        Self { scattering: (a.scattering * b.scattering).sqrt(), phase, ratios }
+        let mut phase: Vec<f64> = (0..cosines.len()).map(|i| mix(scale, &|node| node.phase[i])).collect();
+        let integral = |phase: &[f64]| tables::views::integral(cosines, phase);
+        let factor = mix(Scale::Linear, &|node| integral(&node.phase)) / integral(&phase);
+        phase.iter_mut().for_each(|value| *value *= factor);
+        let ratio = |j: usize| (0..cosines.len()).map(|i| mix(Scale::Linear, &|node| node.ratios[j][i])).collect();
+        let scattering = mix(Scale::Logarithmic, &|node| node.scattering);
+        Self { scattering, phase, ratios: [ratio(0), ratio(1), ratio(2)] }
     }
 
-    /// What a table says that has every so manieth of the angles.
-    fn at_every(&self, stride: usize, cosines: &[f64]) -> Self {
-        let every = |values: &[f64], stride: usize| values.iter().copied().step_by(stride).collect::<Vec<_>>();
-        // Linear in the cosine between these.
-        let spread = |values: &[f64], stride: usize| -> Vec<f64> {
-            let between = |(i, c): (usize, &f64)| {
-                let node = (i / stride).min(values.len() - 2);
-                let (a, b) = (cosines[node * stride], cosines[(node + 1) * stride]);
-                values[node] + (c - a) / (b - a) * (values[node + 1] - values[node])
-            };
-            cosines.iter().enumerate().map(between).collect()
+    /// What a table says that has every so manieth of the angles, from which `angles` lead on.
+    fn at_every(&self, stride: usize, angles: &Angles, scale: Scale, cosines: &[f64]) -> Self {
+        let refined = |values: &[f64], scale: Scale| {
+            let nodes: Vec<f64> = values.iter().step_by(stride).map(|value| scale.of(*value)).collect();
+            angles.between(scale, &nodes)
         };
-        let mut phase = every(&self.phase, stride);
-        normalise(&every(cosines, stride), &mut phase);
-        let matrix_stride = stride * MATRIX_STRIDE;
-        let ratios = self.ratios.each_ref().map(|ratio| spread(&every(ratio, matrix_stride), matrix_stride));
-        Self { scattering: self.scattering, phase: spread(&phase, stride), ratios }
+        let lines = |values: Vec<f64>| -> Vec<f64> {
+            let nodes = angles.cosines();
+            let at = |c: &f64| {
+                let next = nodes.partition_point(|node| node <= c).clamp(1, nodes.len() - 1);
+                let (a, b) = (next - 1, next);
+                values[a] + (c - nodes[a]) / (nodes[b] - nodes[a]) * (values[b] - values[a])
+            };
+            cosines.iter().map(at).collect()
+        };
+        let (phase, _) = angles.phase(refined(&self.phase, scale));
+        let ratios = self.ratios.each_ref().map(|ratio| lines(refined(ratio, Scale::Linear)));
+        Self { scattering: self.scattering, phase: lines(phase), ratios }
     }
 
     /// What a table says that keeps so many binary digits.
@@ -107,6 +152,7 @@ impl Scatterer {
 
 /// Skies over all biomes at some wavelengths and angles.
 struct Skies {
+    names: Vec<String>,
     wavelengths: Vec<f64>,
     cosines: Vec<f64>,
     /// Angles whose mean over the sun's disc about an angle is taken, with their weights.
@@ -117,15 +163,25 @@ struct Skies {
     all: Vec<Vec<(f64, Vec<Scatterer>)>>,
 }
 
-/// Errors relative to the radiance.
+/// Errors relative to the radiance, largest over wavelengths.
 #[derive(Debug, Clone, Copy, Default)]
 struct Errors {
-    /// Largest over angles, wavelengths and biomes.
+    /// Largest over angles.
     largest: f64,
-    /// Root of the mean square over directions, largest over wavelengths and biomes.
+    /// Root of the mean square over directions.
     rms: f64,
     /// Largest of an element of the scattering matrix.
     matrix: f64,
+}
+
+impl Errors {
+    fn or(self, other: Self) -> Self {
+        Self {
+            largest: self.largest.max(other.largest),
+            rms: self.rms.max(other.rms),
+            matrix: self.matrix.max(other.matrix),
+        }
+    }
 }
 
 impl Skies {
@@ -155,7 +211,8 @@ impl Skies {
             Ok(cosines.iter().map(|c| factor * ((1.0 + 3.0 * gamma) + (1.0 - gamma) * c * c)).collect())
         };
         let molecules = wavelengths.iter().map(of_molecules).collect::<Result<_, _>>()?;
-        Ok(Self { wavelengths, disc: disc(degrees), cosines, molecules, all })
+        let names = recipes.iter().map(|recipe| recipe.origin.to_string()).collect();
+        Ok(Self { names, wavelengths, disc: disc(degrees), cosines, molecules, all })
     }
 
     /// The optics at a wavelength among those by wavelength.
@@ -194,18 +251,33 @@ impl Skies {
         (phase, matrix.iter().flatten().copied().fold(0.0, f64::max))
     }
 
-    /// The errors over all skies at some wavelengths.
-    fn judge(&self, tried: &[f64], found: impl Fn(&[Scatterer], f64) -> Scatterer) -> Errors {
-        let mut worst = Errors::default();
-        for (sky, &nm) in self.all.iter().flat_map(|sky| tried.iter().map(move |nm| (sky, nm))) {
-            let (errors, matrix) = self.errors(sky, nm, &|species| found(species, nm));
+    /// The errors of each sky at some wavelengths.
+    fn judge(&self, tried: &[Place], found: &dyn Fn(&[Scatterer], &Place) -> Scatterer) -> Vec<Errors> {
+        let one = |sky: &Vec<(f64, Vec<Scatterer>)>, place: &Place| {
+            let (errors, matrix) = self.errors(sky, place.nm, &|species| found(species, place));
             let squares: Vec<f64> = errors.iter().map(|e| e * e).collect();
             let rms = (tables::views::integral(&self.cosines, &squares) / (4.0 * PI)).sqrt();
-            worst.largest = errors.into_iter().fold(worst.largest, f64::max);
-            worst.rms = worst.rms.max(rms);
-            worst.matrix = worst.matrix.max(matrix);
+            Errors { largest: errors.into_iter().fold(0.0, f64::max), rms, matrix }
+        };
+        let of = |sky| tried.iter().map(|place| one(sky, place)).fold(Errors::default(), Errors::or);
+        self.all.iter().map(of).collect()
+    }
+
+    /// The largest error at each angle.
+    fn by_angle(&self, tried: &[Place], found: &dyn Fn(&[Scatterer], &Place) -> Scatterer) -> Vec<f64> {
+        let mut worst = vec![0.0_f64; self.cosines.len()];
+        for (sky, place) in self.all.iter().flat_map(|sky| tried.iter().map(move |place| (sky, place))) {
+            let (errors, _) = self.errors(sky, place.nm, &|species| found(species, place));
+            worst.iter_mut().zip(errors).for_each(|(worst, error)| *worst = worst.max(error));
         }
         worst
+    }
+
+    /// What a table says of a species between its wavelengths.
+    fn spectral(&self, species: &[Scatterer], place: &Place, scale: Scale) -> Scatterer {
+        let near: Vec<(&Scatterer, f64)> =
+            place.nodes.iter().map(|&(node, weight)| (self.at(species, node), weight)).collect();
+        Scatterer::between(&near, &self.cosines, scale)
     }
 }
 
@@ -238,42 +310,68 @@ fn disc(degrees: &[f64]) -> Vec<Vec<(usize, f64)>> {
 /// Megabytes of phase functions and matrices over all tables with so many wavelengths and angles, in single precision.
 fn megabytes(recipes: &[Recipe], wavelengths: usize, angles: usize) -> f64 {
     let rows: usize = recipes.iter().flat_map(|recipe| &recipe.species).map(|s| s.humidities.len()).sum();
-    let numbers = angles + 3 * ((angles - 1) / MATRIX_STRIDE + 1);
-    (4 * rows * wavelengths * numbers) as f64 * 1e-6
+    (4 * rows * wavelengths * 4 * angles) as f64 * 1e-6
 }
 
-/// A line and a row of numbers on a candidate.
-fn told(words: &str, megabytes: f64, errors: Errors) -> (String, [f64; 4]) {
-    let Errors { largest, rms, matrix } = errors;
-    let line =
-        format!("{words:<22} {megabytes:6.2} MB  largest error {largest:.1e}  rms {rms:.1e}  matrix {matrix:.1e}");
-    (line, [megabytes, largest, rms, matrix])
+/// A candidate over all skies: a line of words, and a row of numbers.
+struct Row {
+    label: String,
+    numbers: [f64; 6],
 }
 
-/// A part of which each row is a candidate, after columns of its own.
-fn part(name: &'static str, first: Vec<(&str, Vec<f64>)>, rows: &[[f64; 4]]) -> Result<Part, StudyError> {
-    let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<_>>();
-    let names = ["megabytes", "largest_error", "rms_error", "matrix_error"];
-    let all = first.into_iter().chain(names.into_iter().enumerate().map(|(i, name)| (name, column(i))));
-    Ok(Part { name, frame: Frame::new(all)? })
+impl Row {
+    /// `largest` and `matrix` also without the sky where they are largest.
+    fn new(label: String, megabytes: f64, skies: &Skies, errors: &[Errors]) -> (Self, String) {
+        let worst = errors.iter().copied().fold(Errors::default(), Errors::or);
+        let at = (0..errors.len()).max_by(|a, b| errors[*a].largest.total_cmp(&errors[*b].largest)).unwrap_or(0);
+        let others = errors.iter().enumerate().filter(|(sky, _)| *sky != at).map(|(_, error)| *error);
+        let others = others.fold(Errors::default(), Errors::or);
+        let line = format!(
+            "{label:<36} {megabytes:6.2} MB  largest error {:.1e}  rms {:.1e}  matrix {:.1e}  without {}: {:.1e}  matrix {:.1e}",
+            worst.largest, worst.rms, worst.matrix, skies.names[at], others.largest, others.matrix
+        );
+        let numbers = [megabytes, worst.largest, worst.rms, worst.matrix, others.largest, others.matrix];
+        (Self { label, numbers }, line)
+    }
 }
 
-/// The column of a set of angles.
-pub(super) fn column(stride: usize) -> String {
-    format!("every_{stride}")
+/// The columns of a part of which each row is a candidate.
+pub(super) const COLUMNS: [&str; 6] = [
+    "megabytes",
+    "largest_error",
+    "rms_error",
+    "matrix_error",
+    "largest_error_but_one_biome",
+    "matrix_error_but_one_biome",
+];
+
+fn part(name: &'static str, rows: Vec<Row>) -> Result<Part, StudyError> {
+    let column = |i: usize| rows.iter().map(|row| row.numbers[i]).collect::<Vec<_>>();
+    let frame = Frame::new(COLUMNS.iter().enumerate().map(|(i, name)| (*name, column(i))))?;
+    let labels = rows.iter().map(|row| row.label.clone()).collect();
+    Ok(Part { name, frame: frame.labelled([("candidate", labels)])? })
 }
 
-/// How many angles there are in a set.
-pub(super) fn angles(stride: usize) -> usize {
-    (finer(FINE as u32).len() - 1) / stride + 1
+/// In words, a rule and a scale.
+fn rule(between: Between) -> &'static str {
+    match between {
+        LINES => "lines",
+        LINES_OF_LOGARITHMS => "lines of ln P",
+        PARABOLAS => "parabolas of ln P",
+        CUBICS => "cubics of ln P",
+        (Interpolation::Parabolic, _) => "parabolas",
+        _ => "another rule",
+    }
 }
 
-/// In words, a step of the wavelength axis.
-pub(super) fn words(step: f64, logarithmic: bool) -> String {
-    format!("{step} nm{}", if logarithmic { ", ln P" } else { "" })
+/// The axis of wavelengths of a step.
+fn wavelengths(step: f64, interpolation: Interpolation) -> Result<Axis, TableError> {
+    let (low, high) = WAVELENGTH_RANGE_NM;
+    let count = ((high - low) / step) as usize + 1;
+    Ok(Axis::uniform(WAVELENGTH.0, WAVELENGTH.1, low, step, count)?.between(interpolation))
 }
 
-/// Errors of radiance and sizes by wavelengths at the tables' angles, by angles at nodes of wavelength, and by angle.
+/// Errors of radiance and sizes by wavelengths at the tables' angles, by angles, and by angle.
 pub(super) fn compare(raw_dir: &Path) -> Result<Results, StudyError> {
     let raw = RawData::from_dir(raw_dir)?;
     let inputs = Inputs { opac: &raw.aerosol_opac, jaenicke: &raw.aerosol_jaenicke };
@@ -281,48 +379,70 @@ pub(super) fn compare(raw_dir: &Path) -> Result<Results, StudyError> {
     let recipes = made.collect::<Result<Vec<Recipe>, _>>()?;
     let mut remarks = Vec::new();
 
-    let around = |&(step, _, tried): &(f64, bool, &'static [f64])| {
-        tried.iter().flat_map(move |nm| [nm - 0.5 * step, *nm, nm + 0.5 * step])
+    let places = |step: f64, interpolation: Interpolation, tried: &[f64]| -> Result<Vec<Place>, TableError> {
+        let axis = wavelengths(step, interpolation)?;
+        tried.iter().map(|nm| Place::on(&axis, *nm)).collect()
     };
-    let skies = Skies::new(&raw, &recipes, STEPS.iter().flat_map(around).collect(), &degrees())?;
+    let steps = STEPS.map(|(step, between)| places(step, between.0, &tried(step)));
+    let steps = steps.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let needed = steps.iter().flatten().flat_map(Place::needed).collect();
+    let skies = Skies::new(&raw, &recipes, needed, &degrees())?;
     let mut rows = Vec::new();
-    for (step, logarithmic, tried) in STEPS {
-        let errors = skies.judge(tried, |species, nm| {
-            let [a, b] = [nm - 0.5 * step, nm + 0.5 * step].map(|nm| skies.at(species, nm));
-            Scatterer::half_way(a, b, &skies.cosines, logarithmic)
-        });
-        let (low, high) = WAVELENGTH_RANGE_NM;
-        let count = ((high - low) / step) as usize + 1;
-        let (line, row) = told(&words(step, logarithmic), megabytes(&recipes, count, skies.cosines.len()), errors);
+    for ((step, between), places) in STEPS.into_iter().zip(&steps) {
+        let errors = skies.judge(places, &|species, place| skies.spectral(species, place, between.1));
+        let size = megabytes(&recipes, wavelengths(step, between.0)?.nodes.len(), skies.cosines.len());
+        let (row, line) = Row::new(format!("{step} nm, {}", rule(between)), size, &skies, &errors);
         remarks.push(line);
         rows.push(row);
     }
-    let steps = STEPS.iter().map(|(step, ..)| *step).collect();
-    let logarithmic = STEPS.iter().map(|(_, logarithmic, _)| f64::from(u8::from(*logarithmic))).collect();
-    let mut parts = vec![part(PARTS[0], vec![("step_nm", steps), ("logarithmic", logarithmic)], &rows)?];
-
-    for digits in [11, 24] {
-        let errors = skies.judge(&ANGLES_AT, |species, nm| skies.at(species, nm).with_digits(digits));
-        remarks.push(told(&format!("{digits} binary digits"), f64::NAN, errors).0.replace("   NaN MB", "         "));
-    }
+    let mut parts = vec![part(PARTS[0], rows)?];
 
     let fine = finer(FINE as u32);
-    let skies = Skies::new(&raw, &recipes, ANGLES_AT.to_vec(), &fine)?;
+    let of_tables = build::aerosol::wavelengths()?;
+    let count = of_tables.nodes.len();
+    let places = ANGLES_AT.into_iter().map(|nm| Place::on(&of_tables, nm)).collect::<Result<Vec<_>, _>>()?;
+    let needed = places.iter().flat_map(Place::needed).collect();
+    let skies = Skies::new(&raw, &recipes, needed, &fine)?;
+    let set = |(stride, (interpolation, _)): (usize, Between)| -> Result<Angles, TableError> {
+        let nodes = skies.cosines.iter().copied().step_by(stride).collect();
+        Angles::new(&Axis::new(COSINE.0, COSINE.1, nodes)?.between(interpolation))
+    };
     let (mut rows, mut by_angle) = (Vec::new(), vec![("scattering_angle_deg".to_owned(), fine)]);
-    for stride in STRIDES {
-        let found = |species: &[Scatterer], nm: f64| skies.at(species, nm).at_every(stride, &skies.cosines);
-        let errors = skies.judge(&ANGLES_AT, found);
-        let (line, row) = told(&format!("{} angles", angles(stride)), megabytes(&recipes, 29, angles(stride)), errors);
+    for (stride, between) in SETS {
+        let angles = set((stride, between))?;
+        let found = |species: &[Scatterer], p: &Place| {
+            skies.at(species, p.nm).at_every(stride, &angles, between.1, &skies.cosines)
+        };
+        let size = megabytes(&recipes, count, angles.nodes());
+        let label = format!("{} angles, {}", angles.nodes(), rule(between));
+        let (row, line) = Row::new(label, size, &skies, &skies.judge(&places, &found));
         remarks.push(line);
         rows.push(row);
-        let mut worst = vec![0.0_f64; skies.cosines.len()];
-        for (sky, nm) in skies.all.iter().flat_map(|sky| ANGLES_AT.map(|nm| (sky, nm))) {
-            let (errors, _) = skies.errors(sky, nm, &|species| found(species, nm));
-            worst.iter_mut().zip(errors).for_each(|(worst, error)| *worst = worst.max(error));
+        if stride == FINE && between != PARABOLAS {
+            let column = BY_ANGLE[usize::from(between == CUBICS)].0;
+            by_angle.push((column.to_owned(), skies.by_angle(&places, &found)));
         }
-        by_angle.push((column(stride), worst));
     }
-    parts.push(part(PARTS[1], vec![("angles", STRIDES.map(|s| angles(s) as f64).to_vec())], &rows)?);
+    let size = megabytes(&recipes, count, degrees().len());
+    for (digits, bits) in [(11, 16.0), (24, 32.0)] {
+        let errors = skies.judge(&places, &|species, place| skies.at(species, place.nm).with_digits(digits));
+        let size = size * bits / 32.0;
+        let (row, line) = Row::new(format!("{digits} binary digits"), size, &skies, &errors);
+        remarks.push(line);
+        rows.push(row);
+    }
+    // What the tables say, from their own nodes.
+    let angles = Angles::new(&axis()?)?;
+    let together = |species: &[Scatterer], place: &Place| {
+        let between = skies.spectral(species, place, Scale::Logarithmic);
+        between.at_every(FINE, &angles, Scale::Logarithmic, &skies.cosines).with_digits(24)
+    };
+    let errors = skies.judge(&places, &together);
+    let (row, line) = Row::new("the tables, all together".into(), size, &skies, &errors);
+    remarks.push(line);
+    rows.push(row);
+    by_angle.push((BY_ANGLE[2].0.to_owned(), skies.by_angle(&places, &together)));
+    parts.push(part(PARTS[1], rows)?);
     parts.push(Part { name: PARTS[2], frame: Frame::new(by_angle)? });
     Ok(Results { parts, remarks })
 }

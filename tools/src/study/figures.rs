@@ -239,13 +239,12 @@ fn aerosol_tables(part: &Part) -> Result<Figure, PolarsError> {
     let error = |label: &str| Axis::logarithmic(label, 1e-7, 1.0, 1);
     if part.name == aerosol_tables::PARTS[2] {
         let mut curves = Vec::new();
-        for (stride, colour) in aerosol_tables::STRIDES.into_iter().zip(COLOURS) {
-            let found = points(frame, ("scattering_angle_deg", 1.0), (&aerosol_tables::column(stride), 1.0))?;
-            curves.push(Curve::new(format!("{} angles", aerosol_tables::angles(stride)), colour, found));
+        for ((column, words), colour) in aerosol_tables::BY_ANGLE.into_iter().zip(COLOURS) {
+            curves.push(Curve::new(words, colour, points(frame, ("scattering_angle_deg", 1.0), (column, 1.0))?));
         }
         let angle = Axis::linear("scattering angle / °", 0.0, 180.0, 30.0);
         let panel = Panel::new(angle, error("error of radiance"), curves).key(Key::TopRight);
-        let title = "What angles cost: largest error of radiance over all biomes, 300 and 500 nm";
+        let title = "What angles cost: largest error of radiance over all biomes, 312.5 and 512.5 nm";
         return Ok(Figure::new(title, vec![vec![panel]]));
     }
     let curve = |name: &str, column: &str, colour| -> Result<Curve, PolarsError> {
@@ -258,10 +257,9 @@ fn aerosol_tables(part: &Part) -> Result<Figure, PolarsError> {
     ];
     let size = Axis::logarithmic("phase functions and matrices / MB", 1.0, 100.0, 1);
     let words = if part.name == aerosol_tables::PARTS[0] {
-        "steps of 50, 25 (also of ln P) and 12.5 nm".to_owned()
+        "steps and rules of wavelengths"
     } else {
-        let counts = aerosol_tables::STRIDES.map(|stride| aerosol_tables::angles(stride).to_string());
-        format!("{} angles", counts.join(", "))
+        "numbers and rules of angles"
     };
     let title = format!("Aerosol tables: error of radiance between nodes against size, {words}");
     Ok(Figure::new(title, vec![vec![Panel::new(size, error("error of radiance"), curves)]]))
@@ -288,8 +286,8 @@ mod tests {
             assert_eq!(panels.len(), size_quadrature::PARTICLES.len());
             assert!(panels.iter().all(|panel| panel.curves.len() == Quadrature::ALL.len()));
         }
-        let by_angle = aerosol_tables::STRIDES.map(aerosol_tables::column);
-        let others = ["megabytes", "largest_error", "rms_error", "matrix_error"].map(String::from);
+        let by_angle = aerosol_tables::BY_ANGLE.map(|(column, _)| column.to_owned());
+        let others = aerosol_tables::COLUMNS.map(String::from);
         let all: Vec<String> = ["scattering_angle_deg".to_owned()].into_iter().chain(by_angle).chain(others).collect();
         for name in aerosol_tables::PARTS {
             let figure = figure(Name::AerosolTables, &Part { name, frame: frame(all.clone()) }).expect("drawn");
