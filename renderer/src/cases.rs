@@ -11,7 +11,7 @@ mod physics;
 
 pub use input::{CasesError, Suite, Tier, parse, read};
 
-use crate::sampling::Sampler;
+use crate::sampling::{POINTS, Sampler};
 use crate::transport::Method;
 use physics::Estimand;
 use rayon::prelude::*;
@@ -108,8 +108,11 @@ pub fn to_csv(answers: &[Answer]) -> String {
     text
 }
 
-/// Paths of the pilot run, which only tells how many the run itself needs.
-const PILOT: u64 = 2048;
+/// Independent replicates of a run, each a scrambled Sobol sequence: their spread is the error.
+const REPLICATES: u64 = 32;
+
+/// Paths of each replicate of the pilot run, which only tells how many the run itself needs.
+const PILOT: u64 = 64;
 
 /// The most paths that one case may take (minutes): where the asked error needs
 /// more, the answer states the error that was reached.
@@ -121,7 +124,7 @@ const DARK_PATHS: u64 = 1 << 20;
 
 /// A pilot measures the variance and is then thrown away, so that
 /// the run's own mean does not decide when it stops; if its error still
-/// comes out too large, the run is lengthened by what its own variance asks for.
+/// comes out too large, replicates of as many paths are added.
 fn estimate(id: &str, estimand: &Estimand, settings: &Settings, index: u64) -> Result<Answer, String> {
     if let Some(value) = estimand.exact() {
         if value == 0.0 && matches!(settings.effort, Effort::Error(_)) {
@@ -129,35 +132,49 @@ fn estimate(id: &str, estimand: &Estimand, settings: &Settings, index: u64) -> R
         }
         return Ok(Answer { id: id.into(), value, stderr: 0.0, paths: 0 });
     }
-    let extend = |moments: &mut Moments, seed: u64, to: u64| {
-        for sample in moments.count..to {
-            let mut sampler = Sampler::new(seed, index, sample);
-            moments.add(estimand.sample(settings.method, &mut sampler));
+    let replicates = |moments: &mut Moments, seed: u64, to: u64, points: u64| {
+        for replicate in moments.count..to {
+            let mut sum = 0.0;
+            for point in 0..points {
+                let mut sampler = Sampler::sobol(seed, index, replicate, point as u32);
+                sum += estimand.sample(settings.method, &mut sampler);
+            }
+            moments.add(sum / points as f64);
         }
     };
     let mut run = Moments::default();
-    match settings.effort {
-        Effort::Paths(paths) => extend(&mut run, settings.seed, paths.max(2)),
+    let points = match settings.effort {
+        Effort::Paths(paths) => {
+            // As many replicates as make equal parts of the paths, at least two.
+            let count = (2..=REPLICATES.min(paths)).rev().find(|n| paths % n == 0 && paths / n <= POINTS);
+            let count = count.unwrap_or_else(|| paths.div_ceil(POINTS));
+            replicates(&mut run, settings.seed, count, paths / count);
+            paths / count
+        }
         Effort::Error(error) => {
+            let mut points = PILOT;
             let mut pilot = Moments::default();
-            extend(&mut pilot, !settings.seed, PILOT);
-            let mut target = pilot.needed(error).max(PILOT);
+            replicates(&mut pilot, !settings.seed, REPLICATES, points);
+            let paths = pilot.needed(error).saturating_mul(points).clamp(REPLICATES * PILOT, MOST_PATHS);
+            points = (paths / REPLICATES).next_power_of_two().min(POINTS);
+            let mut target = paths.div_ceil(points).max(REPLICATES);
             loop {
-                extend(&mut run, settings.seed, target.min(MOST_PATHS));
-                if run.mean == 0.0 && run.count >= DARK_PATHS {
+                replicates(&mut run, settings.seed, target, points);
+                if run.mean == 0.0 && run.count * points >= DARK_PATHS {
                     return Err(format!(
                         "no light on any of {DARK_PATHS} paths: zero, or too dark for a relative error"
                     ));
                 }
                 let reached = run.mean != 0.0 && run.stderr() <= error * run.mean.abs();
-                if reached || run.count >= MOST_PATHS {
+                if reached || run.count * points >= MOST_PATHS {
                     break;
                 }
-                target = run.needed(error).max(run.count + run.count / 4);
+                target = run.needed(error).max(run.count + run.count / 4).min(MOST_PATHS / points);
             }
+            points
         }
-    }
-    Ok(Answer { id: id.into(), value: run.mean, stderr: run.stderr(), paths: run.count })
+    };
+    Ok(Answer { id: id.into(), value: run.mean, stderr: run.stderr(), paths: run.count * points })
 }
 
 /// Count, mean and sum of squared deviations (Welford 1962).

@@ -1,7 +1,7 @@
 //! From a case to something that can be sampled.
 
 use super::input::{Case, Layer, Profile};
-use crate::atmosphere::{Component, Medium};
+use crate::atmosphere::{Columns, Component, Medium, Tolerance};
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::phase::Phase;
@@ -20,6 +20,7 @@ const LAYER_M: f64 = 1000.0;
 #[derive(Debug)]
 pub(super) struct Estimand {
     medium: Medium<1>,
+    columns: Columns<1>,
     shape: Shape,
     albedo: f64,
     sun: SunDisc<1>,
@@ -66,7 +67,8 @@ impl Estimand {
     /// the density cos(theta)/pi.
     pub(super) fn sample(&self, method: Method, sampler: &mut Sampler) -> f64 {
         let flux = |facing: DVec3, sampler: &mut Sampler| {
-            let direction = cosine_hemisphere(facing, sampler.uniform_2d());
+            let [u, v, ..] = sampler.four();
+            let direction = cosine_hemisphere(facing, [u, v]);
             PI * self.radiance(method, direction, sampler)
         };
         match self.quantity {
@@ -83,6 +85,7 @@ impl Estimand {
         let problem = Problem {
             shape: self.shape,
             medium: &self.medium,
+            columns: &self.columns,
             albedo: [self.albedo],
             sun: Some(&self.sun),
             environment: None,
@@ -144,6 +147,7 @@ pub(super) fn prepare(case: &Case, profiles: &BTreeMap<String, Profile>) -> Resu
         other => return Err(format!("quantity {other:?} is not offered")),
     };
     Ok(Estimand {
+        columns: Columns::new(&medium, shape, Tolerance::RENDER),
         medium,
         shape,
         albedo: case.albedo,
