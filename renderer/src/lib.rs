@@ -1,6 +1,7 @@
 //! Renders the sky of a spherical planet from Airlight's optical tables.
 
 pub mod atmosphere;
+pub mod bench;
 pub mod camera;
 pub mod cases;
 pub mod cli;

@@ -4,14 +4,33 @@
 use glam::DVec3;
 use rand_core::Rng;
 use rand_pcg::Pcg32;
+use sobol_burley::{NUM_DIMENSION_SETS_4D, sample_4d};
 use std::f64::consts::TAU;
 
 /// A stream of uniform numbers that depends on (seed, pixel, sample) and on
 /// nothing else, so that any path can be replayed and the number of threads
 /// does not matter. PCG32 (O'Neill 2014), its state and stream from a
 /// SplitMix64 hash of the three (Steele, Lea & Flood 2014).
+///
+/// A stream may be one point of a scrambled Sobol sequence instead ([`Sampler::sobol`]): its first numbers, those of the
+/// early stages of a path, then fill the unit cube more evenly than chance, and each point by
+/// itself is still uniform.
 #[derive(Debug, Clone)]
-pub struct Sampler(Pcg32);
+pub struct Sampler {
+    random: Pcg32,
+    point: Option<Point>,
+}
+
+/// A point of a Sobol sequence and the next four of its dimensions.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    index: u32,
+    scramble: u32,
+    set: u32,
+}
+
+/// Points that a Sobol sequence has.
+pub const POINTS: u64 = 1 << 16;
 
 impl Sampler {
     /// The stream of one sample of one pixel.
@@ -19,19 +38,54 @@ impl Sampler {
     pub fn new(seed: u64, pixel: u64, sample: u64) -> Self {
         let state = mix(mix(mix(seed).wrapping_add(pixel)).wrapping_add(sample));
         let stream = mix(state ^ 0x5851_f42d_4c95_7f2d);
-        Self(Pcg32::new(state, stream))
+        Self { random: Pcg32::new(state, stream), point: None }
+    }
+
+    /// Point `index` (below [`POINTS`]) of replicate `replicate` of a pixel's Sobol sequence, with Owen's scrambling by hashing
+    /// (Burley 2020): replicates are independent of each other, the points of one are not.
+    #[must_use]
+    pub fn sobol(seed: u64, pixel: u64, replicate: u64, index: u32) -> Self {
+        let scramble = mix(mix(mix(seed).wrapping_add(pixel)).wrapping_add(replicate) ^ 0x2545_f491_4f6c_dd1d) >> 32;
+        Self {
+            point: Some(Point { index, scramble: scramble as u32, set: 0 }),
+            ..Self::new(seed, pixel, replicate.wrapping_mul(POINTS).wrapping_add(u64::from(index)))
+        }
     }
 
     /// A uniform number in [0, 1): 53 bits.
     #[inline]
     pub fn uniform(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
+        (self.random.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
     }
 
     /// Two uniform numbers in [0, 1).
     #[inline]
     pub fn uniform_2d(&mut self) -> [f64; 2] {
         [self.uniform(), self.uniform()]
+    }
+
+    /// Goes on with set `set` of four dimensions. Every stage of a path has sets of its own, so that a dimension means the
+    /// same for all points: set 0 is the camera's, 1 chooses the wavelength, 2n and 2n + 1 are those of order n.
+    #[inline]
+    pub fn go_to(&mut self, set: u32) {
+        if let Some(point) = &mut self.point {
+            point.set = set;
+        }
+    }
+
+    /// The next four numbers in [0, 1): of the sequence where it has so many dimensions, at random beyond.
+    #[inline]
+    pub fn four(&mut self) -> [f64; 4] {
+        if let Some(point) = &mut self.point
+            && point.set < NUM_DIMENSION_SETS_4D
+        {
+            let four = sample_4d(point.index, point.set, point.scramble);
+            point.set += 1;
+            // The sequence has 23 bits; below them is chance.
+            let fine = self.uniform() * f64::from(f32::EPSILON);
+            return four.map(|u| f64::from(u) + fine);
+        }
+        [self.uniform(), self.uniform(), self.uniform(), self.uniform()]
     }
 }
 

@@ -1,5 +1,6 @@
 //! A layered medium at `L` wavelengths.
 
+use super::lookup::Lookup;
 use crate::geometry::{End, Place, Ray, Segment, Shape};
 use crate::phase::Phase;
 use glam::DVec3;
@@ -21,6 +22,15 @@ pub struct Component<const L: usize> {
     pub absorption: [f64; L],
     /// Where scattered light goes.
     pub phase: Phase<L>,
+}
+
+impl<const L: usize> Component<L> {
+    /// Whether it scatters at any wavelength.
+    #[must_use]
+    #[inline]
+    pub fn scatters(&self) -> bool {
+        self.scattering.iter().any(|&sigma| sigma > 0.0)
+    }
 }
 
 /// Why components do not make a medium.
@@ -96,6 +106,7 @@ pub struct Medium<const L: usize> {
     components: Vec<Component<L>>,
     /// Ends of the intervals, m: 0 to the top.
     nodes: Vec<f64>,
+    finder: Lookup,
     /// Span of component c in interval i at [i * components + c].
     spans: Vec<Span>,
     shells: Vec<Shell<L>>,
@@ -136,7 +147,8 @@ impl<const L: usize> Medium<L> {
                 spans.push(span(&component.density, ends[0], ends[1])?);
             }
         }
-        let mut medium = Self { components, nodes, spans, shells: Vec::new(), bounds: Vec::new() };
+        let finder = Lookup::new(nodes.clone());
+        let mut medium = Self { components, nodes, finder, spans, shells: Vec::new(), bounds: Vec::new() };
         medium.lay_shells()?;
         Ok(medium)
     }
@@ -167,7 +179,7 @@ impl<const L: usize> Medium<L> {
 
     /// Densities of all components in interval `i` at `fraction` of its height.
     #[inline]
-    fn densities(&self, interval: usize, fraction: f64) -> [f64; MAX_COMPONENTS] {
+    pub(super) fn densities(&self, interval: usize, fraction: f64) -> [f64; MAX_COMPONENTS] {
         let count = self.components.len();
         let mut densities = [0.0; MAX_COMPONENTS];
         for (density, span) in densities.iter_mut().zip(&self.spans[interval * count..(interval + 1) * count]) {
@@ -194,10 +206,40 @@ impl<const L: usize> Medium<L> {
         self.combine(&self.densities(interval, fraction))
     }
 
+    /// Ends of the intervals in m: every profile is linear or exponential between two of them.
+    pub(super) fn nodes(&self) -> &[f64] {
+        &self.nodes
+    }
+
+    /// Largest change of the logarithm of a density over an interval.
+    pub(super) fn most_rise(&self, interval: usize) -> f64 {
+        let count = self.components.len();
+        let spans = &self.spans[interval * count..(interval + 1) * count];
+        let exponential = spans.iter().filter(|span| span.scale == Scale::Logarithmic);
+        exponential.map(|span| span.rise.abs()).fold(0.0, f64::max)
+    }
+
+    /// Extinction coefficient in m^-1 in interval `interval` at `fraction` of its height.
+    pub(super) fn extinction_in(&self, interval: usize, fraction: f64) -> [f64; L] {
+        self.combine(&self.densities(interval, fraction))
+    }
+
     /// All coefficients at an altitude inside shell `shell`.
     #[must_use]
     pub fn local(&self, shell: usize, altitude_m: f64) -> Local<L> {
         let (interval, fraction) = self.locate(shell, altitude_m);
+        self.local_in(interval, fraction)
+    }
+
+    /// All coefficients at an altitude in m; the nearest end of the medium for what lies outside.
+    #[must_use]
+    pub fn local_at(&self, altitude_m: f64) -> Local<L> {
+        let (interval, fraction) = self.finder.locate(altitude_m);
+        self.local_in(interval, fraction)
+    }
+
+    #[inline]
+    fn local_in(&self, interval: usize, fraction: f64) -> Local<L> {
         let densities = self.densities(interval, fraction);
         let mut scattering = [0.0; L];
         for (component, density) in self.components.iter().zip(densities) {
@@ -324,7 +366,7 @@ impl<const L: usize> Medium<L> {
 }
 
 /// Nodes in -1..1 and weights of the four-point Gauss-Legendre rule.
-const GAUSS_4: [(f64, f64); 4] = [
+pub(super) const GAUSS_4: [(f64, f64); 4] = [
     (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
     (-0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
     (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),

@@ -6,9 +6,12 @@
 //! cross-section is a polynomial in temperature), the species of an aerosol.
 
 mod air;
+mod columns;
 mod haze;
+mod lookup;
 mod medium;
 
 pub use air::{Air, AirError, AirSettings, OzoneSource};
+pub use columns::{Chord, Columns, Point, Tolerance};
 pub use haze::{Amount, Haze, HazePhase, HazeSettings, KOSCHMIEDER};
 pub use medium::{Component, Local, MAX_COMPONENTS, Medium, MediumError, Shell};

@@ -1,7 +1,7 @@
 //! From a case to something that can be sampled.
 
 use super::input::{Case, Layer, Profile};
-use crate::atmosphere::{Component, Medium};
+use crate::atmosphere::{Columns, Component, Medium, Tolerance};
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::phase::Phase;
@@ -10,6 +10,7 @@ use crate::transport::{self, Method, Problem};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
+use std::sync::Arc;
 use tables::units::{EARTH_RADIUS_M, KM};
 use tables::{Axis, Curve, Interpolation, Outside, Scale};
 
@@ -20,6 +21,7 @@ const LAYER_M: f64 = 1000.0;
 #[derive(Debug)]
 pub(super) struct Estimand {
     medium: Medium<1>,
+    columns: Arc<Columns<1>>,
     shape: Shape,
     albedo: f64,
     sun: SunDisc<1>,
@@ -55,6 +57,11 @@ impl Estimand {
         }
     }
 
+    /// Irradiance of the beam.
+    pub(super) fn f0(&self) -> f64 {
+        self.f0
+    }
+
     /// mu_0 exp(-tau) F_0 at the place.
     fn direct(&self) -> f64 {
         let sun = self.sun.direction();
@@ -66,7 +73,8 @@ impl Estimand {
     /// the density cos(theta)/pi.
     pub(super) fn sample(&self, method: Method, sampler: &mut Sampler) -> f64 {
         let flux = |facing: DVec3, sampler: &mut Sampler| {
-            let direction = cosine_hemisphere(facing, sampler.uniform_2d());
+            let [u, v, ..] = sampler.four();
+            let direction = cosine_hemisphere(facing, [u, v]);
             PI * self.radiance(method, direction, sampler)
         };
         match self.quantity {
@@ -83,6 +91,7 @@ impl Estimand {
         let problem = Problem {
             shape: self.shape,
             medium: &self.medium,
+            columns: &self.columns,
             albedo: [self.albedo],
             sun: Some(&self.sun),
             environment: None,
@@ -93,8 +102,56 @@ impl Estimand {
     }
 }
 
+/// Columns of the atmospheres of several cases: they depend on the profile and on the planet, and on nothing else.
+#[derive(Debug, Default)]
+pub(super) struct Shared(BTreeMap<(String, u64), Arc<Columns<1>>>);
+
+impl Shared {
+    fn key(case: &Case) -> Option<(String, u64)> {
+        let profile = case.profile.clone()?;
+        (case.geometry == "spherical").then(|| (profile, case.planet_radius_km.map_or(0, f64::to_bits)))
+    }
+
+    /// Makes the columns of those cases that are not refused for their air.
+    pub(super) fn new<'a>(cases: impl Iterator<Item = &'a Case>, profiles: &BTreeMap<String, Profile>) -> Self {
+        let mut shared = Self::default();
+        for case in cases {
+            if let Some(key) = Self::key(case)
+                && !shared.0.contains_key(&key)
+                && let Ok((shape, medium)) = air(case, profiles)
+            {
+                shared.0.insert(key, Arc::new(Columns::new(&medium, shape, Tolerance::RENDER)));
+            }
+        }
+        shared
+    }
+
+    fn columns(&self, case: &Case, shape: Shape, medium: &Medium<1>) -> Arc<Columns<1>> {
+        let ready = Self::key(case).and_then(|key| self.0.get(&key)).cloned();
+        ready.unwrap_or_else(|| Arc::new(Columns::new(medium, shape, Tolerance::RENDER)))
+    }
+}
+
+/// The planet's form and the atmosphere of a case.
+fn air(case: &Case, profiles: &BTreeMap<String, Profile>) -> Result<(Shape, Medium<1>), String> {
+    match case.geometry.as_str() {
+        "plane-parallel" => {
+            let layers = case.layers.as_ref().ok_or("a plane-parallel case needs layers")?;
+            Ok((Shape::Flat, layered(layers)?))
+        }
+        "spherical" => {
+            let radius_m = case.planet_radius_km.map_or(EARTH_RADIUS_M, |km| km * KM);
+            ranged("planet_radius_km", radius_m / KM, f64::MIN_POSITIVE, 1e9)?;
+            let name = case.profile.as_ref().ok_or("a spherical case needs a profile")?;
+            let profile = profiles.get(name).ok_or_else(|| format!("no profile named {name:?} in the file"))?;
+            Ok((Shape::Sphere { radius_m }, spherical(profile, case.phase.as_deref())?))
+        }
+        other => Err(format!("geometry {other:?} is neither plane-parallel nor spherical")),
+    }
+}
+
 /// Makes a case ready, or says in a phrase why it is refused.
-pub(super) fn prepare(case: &Case, profiles: &BTreeMap<String, Profile>) -> Result<Estimand, String> {
+pub(super) fn prepare(case: &Case, profiles: &BTreeMap<String, Profile>, shared: &Shared) -> Result<Estimand, String> {
     if !matches!(case.polarization.as_str(), "scalar" | "any") {
         return Err("polarised transfer is not offered yet: scalar cases only".into());
     }
@@ -110,20 +167,7 @@ pub(super) fn prepare(case: &Case, profiles: &BTreeMap<String, Profile>) -> Resu
     ranged("sza_deg", case.sza_deg, 0.0, 180.0)?;
     ranged("albedo", case.albedo, 0.0, 1.0)?;
     ranged("F0", case.f0, 0.0, f64::MAX)?;
-    let (shape, medium) = match case.geometry.as_str() {
-        "plane-parallel" => {
-            let layers = case.layers.as_ref().ok_or("a plane-parallel case needs layers")?;
-            (Shape::Flat, layered(layers)?)
-        }
-        "spherical" => {
-            let radius_m = case.planet_radius_km.map_or(EARTH_RADIUS_M, |km| km * KM);
-            ranged("planet_radius_km", radius_m / KM, f64::MIN_POSITIVE, 1e9)?;
-            let name = case.profile.as_ref().ok_or("a spherical case needs a profile")?;
-            let profile = profiles.get(name).ok_or_else(|| format!("no profile named {name:?} in the file"))?;
-            (Shape::Sphere { radius_m }, spherical(profile, case.phase.as_deref())?)
-        }
-        other => return Err(format!("geometry {other:?} is neither plane-parallel nor spherical")),
-    };
+    let (shape, medium) = air(case, profiles)?;
     // A flux is that of the place in its name.
     let altitude_m = match (case.quantity.as_str(), case.observer.as_str(), case.observer_alt_km) {
         ("flux_up_top", ..) => medium.top_m(),
@@ -144,6 +188,7 @@ pub(super) fn prepare(case: &Case, profiles: &BTreeMap<String, Profile>) -> Resu
         other => return Err(format!("quantity {other:?} is not offered")),
     };
     Ok(Estimand {
+        columns: shared.columns(case, shape, &medium),
         medium,
         shape,
         albedo: case.albedo,

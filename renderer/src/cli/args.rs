@@ -185,6 +185,25 @@ pub(super) struct RadianceArgs {
     pub quiet: bool,
 }
 
+/// Flags of `airlight bench`.
+#[derive(Debug, Args)]
+pub(super) struct BenchArgs {
+    /// What to measure: anchors, four skies (450, 680 and 550 nm by day, 450 nm in twilight)
+    #[arg(value_name = "WHAT")]
+    pub what: BenchName,
+    /// Estimator
+    #[arg(long, value_name = "METHOD", default_value = "paths")]
+    pub method: MethodName,
+    /// Least time for each direction in seconds
+    #[arg(long, value_name = "S", default_value_t = 1.0)]
+    pub seconds: f64,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum BenchName {
+    Anchors,
+}
+
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum MethodName {
     Judge,

@@ -5,6 +5,7 @@
 //! be, 130 stopped by Ctrl-C (what was there is written first).
 
 mod args;
+mod bench;
 mod output;
 mod progress;
 mod radiance;
@@ -22,6 +23,8 @@ enum Command {
     Render(Box<args::RenderArgs>),
     /// Answer a file of reference cases: radiances with their standard errors
     Radiance(args::RadianceArgs),
+    /// Measure what a direction and a picture cost on skies that other renderers were timed on
+    Bench(args::BenchArgs),
 }
 
 /// What a command ends in, short of an error.
@@ -58,6 +61,7 @@ pub fn main() -> ExitCode {
     let outcome = match Command::parse() {
         Command::Render(args) => render::run(&args),
         Command::Radiance(args) => radiance::run(&args),
+        Command::Bench(args) => bench::run(&args),
     };
     match outcome.and_then(|outcome| output::finish().map(|()| outcome)) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

@@ -1,7 +1,7 @@
 //! A scene turned into something that answers: what arrives from a direction?
 
 use super::RenderError;
-use crate::atmosphere::{Air, AirSettings, Haze, Medium, OzoneSource};
+use crate::atmosphere::{Air, AirSettings, Columns, Haze, Medium, OzoneSource, Tolerance};
 use crate::data::{Data, Identity};
 use crate::geometry::{Place, Shape};
 use crate::light::{SunDisc, solar_angular_radius};
@@ -211,10 +211,13 @@ impl Parts<'_> {
     fn carry<const L: usize>(&self, packet: &Packet) -> Result<Box<dyn Carrier>, RenderError> {
         let nm: [f64; L] = self.wavelengths.lanes(packet);
         let last = packet.range.end - 1;
+        let shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
+        let medium = self.air.medium(&nm)?;
         Ok(Box::new(Lanes {
             method: self.method,
-            shape: Shape::Sphere { radius_m: EARTH_RADIUS_M },
-            medium: self.air.medium(&nm)?,
+            shape,
+            columns: Columns::new(&medium, shape, Tolerance::RENDER),
+            medium,
             albedo: std::array::from_fn(|lane| self.albedo[(packet.range.start + lane).min(last)]),
             sun: SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius())?,
         }))
@@ -234,6 +237,7 @@ struct Lanes<const L: usize> {
     method: Method,
     shape: Shape,
     medium: Medium<L>,
+    columns: Columns<L>,
     albedo: [f64; L],
     sun: SunDisc<L>,
 }
@@ -243,6 +247,7 @@ impl<const L: usize> Carrier for Lanes<L> {
         let problem = Problem {
             shape: self.shape,
             medium: &self.medium,
+            columns: &self.columns,
             albedo: self.albedo,
             sun: Some(&self.sun),
             environment: None,

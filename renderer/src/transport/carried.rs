@@ -1,5 +1,9 @@
 //! What a path carries from vertex to vertex.
 
+/// After the first vertex a path lives on with this probability times its weight over the weight at the first
+/// vertex, at most 1. The figure balances the variance of the later orders against their cost.
+pub(super) const SURVIVAL: f64 = 4.0;
+
 /// What a path carries: f_j and r_j of the module's head.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Carried<const L: usize> {

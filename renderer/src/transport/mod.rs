@@ -12,11 +12,12 @@
 //! wherever some wavelength would have drawn the path.
 
 mod carried;
-mod flight;
-mod path;
+mod judge;
+mod paths;
 mod ratio;
+mod scatter;
 
-use crate::atmosphere::Medium;
+use crate::atmosphere::{Columns, Medium};
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::sampling::Sampler;
@@ -30,9 +31,8 @@ pub enum Method {
     /// The brute-force judge: analog free flights by delta tracking. Unbiased,
     /// with nothing clever in it; slow where the air is thin.
     Judge,
-    /// Paths that are made to collide on every ray: one tentative collision
-    /// by inverting the majorants' optical depth, weighted by a ratio-tracked
-    /// transmittance. Unbiased, and far less noisy where the air is thin.
+    /// Paths on column tables: flights by inversion, forced collisions, single scattering by quadrature. Unbiased but for the
+    /// interpolation of the tables.
     Paths,
 }
 
@@ -43,6 +43,8 @@ pub struct Problem<'a, const L: usize> {
     pub shape: Shape,
     /// The atmosphere.
     pub medium: &'a Medium<L>,
+    /// Its columns.
+    pub columns: &'a Columns<L>,
     /// Lambertian albedo of the ground, 0 to 1.
     pub albedo: [f64; L],
     /// The sun, above the atmosphere, in the frame of the observer; `None` for none.
@@ -66,10 +68,11 @@ pub fn radiance<const L: usize>(
     direction: DVec3,
     sampler: &mut Sampler,
 ) -> [f64; L] {
-    let hero = ((sampler.uniform() * L as f64) as usize).min(L - 1);
+    sampler.go_to(1);
+    let hero = ((sampler.four()[0] * L as f64) as usize).min(L - 1);
     match method {
-        Method::Judge => path::trace(problem, from, direction, hero, sampler, flight::delta),
-        Method::Paths => path::trace(problem, from, direction, hero, sampler, flight::forced),
+        Method::Judge => judge::trace(problem, from, direction, hero, sampler),
+        Method::Paths => paths::trace(problem, from, direction, hero, sampler),
     }
 }
 

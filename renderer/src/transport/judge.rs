@@ -1,29 +1,23 @@
-//! A path: flights, next-event estimation to the sun, scattering, reflection,
-//! Russian roulette.
+//! The brute-force judge: analog free flights by delta tracking, next-event estimation to the sun by ratio tracking,
+//! Russian roulette. It knows no table of columns.
 
 use super::Problem;
-use super::carried::Carried;
-use super::flight::{Flight, Outcome, Track};
-use super::ratio;
-use crate::atmosphere::{Local, Medium};
+use super::carried::{Carried, SURVIVAL};
+use super::ratio::{self, exponential};
+use super::scatter::{mixture, scatter};
+use crate::atmosphere::Local;
 use crate::geometry::{End, Place, Ray, Segment};
-use crate::sampling::{Sampler, around, cosine_hemisphere};
+use crate::sampling::{Sampler, cosine_hemisphere};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// After the first vertex a path lives on with this probability times its
-/// weight over the weight at the first vertex, at most 1. The figure balances
-/// the variance of the later orders against their cost.
-const SURVIVAL: f64 = 4.0;
-
-/// Radiance along one path whose flights `fly` draws.
+/// Radiance along one path.
 pub(super) fn trace<const L: usize>(
     problem: &Problem<'_, L>,
     from: Place,
     direction: DVec3,
     hero: usize,
     sampler: &mut Sampler,
-    fly: Flight<L>,
 ) -> [f64; L] {
     let medium = problem.medium;
     let mut sum = [0.0; L];
@@ -46,7 +40,7 @@ pub(super) fn trace<const L: usize>(
                     let phase = mixture(medium, &local, direction.dot(sun));
                     carried.score(&mut sum, |j| phase[j] * light[j]);
                 }
-                match scatter(medium, &local, hero, direction, &mut carried, sampler) {
+                match scatter(medium, &local, hero, direction, &mut carried, sampler.uniform_2d()) {
                     Some(scattered) => direction = scattered,
                     None => break,
                 }
@@ -98,61 +92,81 @@ fn sunlight<const L: usize>(
     }
 }
 
-/// Phase function of the mixture at a point in sr^-1:
-/// sum_s sigma_s p_s(c) / sum_s sigma_s over the scattering species.
-fn mixture<const L: usize>(medium: &Medium<L>, local: &Local<L>, cosine: f64) -> [f64; L] {
-    let mut sum = [0.0; L];
-    for (component, density) in scatterers(medium, local) {
-        let phase = component.phase.values(cosine);
-        for (j, sum) in sum.iter_mut().enumerate() {
-            *sum += density * component.scattering[j] * phase[j];
-        }
-    }
-    for (sum, scattering) in sum.iter_mut().zip(local.scattering) {
-        *sum = if scattering > 0.0 { *sum / scattering } else { 0.0 };
-    }
-    sum
+/// A ray with its parts in the shells of the medium and its end.
+struct Track<'a> {
+    ray: Ray,
+    segments: &'a [Segment],
+    end: End,
 }
 
-fn scatterers<'a, const L: usize>(
-    medium: &'a Medium<L>,
-    local: &'a Local<L>,
-) -> impl Iterator<Item = (&'a crate::atmosphere::Component<L>, f64)> {
-    medium
-        .components()
-        .iter()
-        .zip(local.densities)
-        .filter(|(component, density)| *density > 0.0 && component.scattering.iter().any(|&s| s > 0.0))
+/// Where a flight ended; [`Carried`] has its weights.
+enum Outcome<const L: usize> {
+    /// A collision in the air at a distance in m, with the coefficients there.
+    Air(f64, Box<Local<L>>),
+    /// The ground at a distance in m.
+    Ground(f64),
+    /// Absorbed, or gone to space.
+    Lost,
 }
 
-/// Draws the direction after a scattering: a species by the hero's
-/// coefficients, an angle by its phase function. The density of the direction
-/// is the hero's mixture, which is its phase function too; other wavelengths
-/// get the ratio of theirs to it, in contribution and density alike. `None` where
-/// rounding has drawn an angle of no density.
-fn scatter<const L: usize>(
-    medium: &Medium<L>,
-    local: &Local<L>,
+/// Delta tracking (Woodcock 1965; Coleman 1968): tentative collisions at the
+/// rate of the hero's majorant, each scattering, absorbing or null with the
+/// hero's probabilities.
+///
+/// Between tentative collisions the density and the contribution of wavelength
+/// j share the factor exp(-majorant_j x distance). A scattering multiplies
+/// both by sigma_s,j, a null collision both by majorant_j - sigma_t,j; so f_j and r_j
+/// stay equal as long as the path flies.
+fn fly<const L: usize>(
+    problem: &Problem<'_, L>,
+    track: &Track<'_>,
     hero: usize,
-    direction: DVec3,
     carried: &mut Carried<L>,
+    escaped: &mut [f64; L],
     sampler: &mut Sampler,
-) -> Option<DVec3> {
-    let mut choice = sampler.uniform() * local.scattering[hero];
-    let [u, turn] = sampler.uniform_2d();
-    let mut chosen = None;
-    for (component, density) in scatterers(medium, local) {
-        chosen = Some(component);
-        choice -= density * component.scattering[hero];
-        if choice < 0.0 {
-            break;
+) -> Outcome<L> {
+    let mut depth = [0.0; L];
+    let mut factor = [1.0; L];
+    let mut ahead = exponential(sampler);
+    for &Segment { layer, start_m, end_m } in track.segments {
+        let majorant = &problem.medium.shells()[layer].majorant;
+        let mut at = start_m;
+        while ahead < majorant[hero] * (end_m - at) {
+            let step = ahead / majorant[hero];
+            at += step;
+            for (depth, majorant) in depth.iter_mut().zip(majorant) {
+                *depth += majorant * step;
+            }
+            let local = problem.medium.local(layer, track.ray.altitude_m(at));
+            let (scattering, extinction) = (local.scattering[hero], local.extinction[hero]);
+            let choice = sampler.uniform() * majorant[hero];
+            if choice < scattering {
+                carried
+                    .multiply_both(|j| factor[j] * (depth[hero] - depth[j]).exp() * local.scattering[j] / scattering);
+                return Outcome::Air(at, Box::new(local));
+            }
+            if choice < extinction {
+                return Outcome::Lost;
+            }
+            let null = majorant[hero] - extinction;
+            for (j, factor) in factor.iter_mut().enumerate() {
+                *factor *= (majorant[j] - local.extinction[j]).max(0.0) / null;
+            }
+            ahead = exponential(sampler);
+        }
+        ahead -= majorant[hero] * (end_m - at);
+        for (depth, majorant) in depth.iter_mut().zip(majorant) {
+            *depth += majorant * (end_m - at);
         }
     }
-    let sample = chosen?.phase.sample(hero, u);
-    let phase = mixture(medium, local, sample.cosine);
-    if phase[hero] <= 0.0 {
-        return None;
+    carried.multiply_both(|j| factor[j] * (depth[hero] - depth[j]).exp());
+    match track.end {
+        End::Ground(t) => Outcome::Ground(t),
+        End::Space => {
+            if let Some(environment) = problem.environment {
+                carried.score(escaped, |j| environment[j]);
+            }
+            Outcome::Lost
+        }
     }
-    carried.multiply_both(|j| phase[j] / phase[hero]);
-    Some(around(direction, sample.cosine, turn))
 }

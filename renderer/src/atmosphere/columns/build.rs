@@ -1,0 +1,465 @@
+//! Making the tables: exact columns by quadrature, nodes where interpolation needs them.
+
+use super::{Columns, Rows};
+use crate::atmosphere::Medium;
+use crate::atmosphere::lookup::Lookup;
+use crate::atmosphere::medium::GAUSS_4;
+use crate::geometry::Shape;
+use rayon::prelude::*;
+
+/// How exact the tables are to be: nodes are added until the optical depth tau between the start of a row and every
+/// node is interpolated to within `depth` x min(e^tau, 10) x max(1, (tau / 14)^2), which changes a transmittance
+/// e^-tau by no more than `depth` absolutely and, where it exceeds 1e-6, by ten times `depth` relatively.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    /// Change of a transmittance.
+    pub depth: f64,
+}
+
+impl Tolerance {
+    /// What the renderer takes: transmittances to 2e-5, and 2e-4 relative wherever they exceed 1e-6.
+    pub const RENDER: Self = Self { depth: 2e-5 };
+
+    /// Allowed error of the optical depth where it is `tau`.
+    fn allowed(self, tau: f64) -> f64 {
+        self.depth * tau.exp().min(10.0) * (tau / 14.0).powi(2).max(1.0)
+    }
+}
+
+/// Largest change of the logarithm of a density within one step of the quadrature; four Gauss points then leave 1e-9.
+const MOST_CHANGE: f64 = 0.5;
+
+/// The most rows of one cell: what a root of the distance to a jump can ask for.
+const MOST_ROWS: usize = 200;
+
+/// How far below a jump in m the last line is that counts as below it.
+const BELOW_A_JUMP: f64 = 1e-6;
+
+/// A step of the quadrature: altitudes in m, within one interval of the medium and one cell of the table.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    bottom: f64,
+    top: f64,
+    interval: usize,
+}
+
+/// Everything that gives exact columns.
+struct Exact<'a, const L: usize> {
+    medium: &'a Medium<L>,
+    shape: Shape,
+    steps: Vec<Step>,
+    lanes: usize,
+    /// Whether a lane is a wavelength, not a species.
+    by_wavelength: bool,
+    extinction: Vec<[f64; L]>,
+    tolerance: Tolerance,
+}
+
+/// Columns [node][lane] from the start of a line, and the distance of each node from the perigee; nothing below the start.
+struct Row {
+    distances: Vec<f64>,
+    columns: Vec<f64>,
+    start: Vec<f64>,
+}
+
+impl<const L: usize> Columns<L> {
+    /// The columns of `medium`.
+    #[must_use]
+    pub fn new(medium: &Medium<L>, shape: Shape, tolerance: Tolerance) -> Self {
+        let species = medium.components().len();
+        let by_wavelength = L < species;
+        let lanes = if by_wavelength { L } else { species };
+        let extinction = (0..lanes)
+            .map(|lane| {
+                if by_wavelength {
+                    std::array::from_fn(|j| f64::from(u8::from(j == lane)))
+                } else {
+                    let component = &medium.components()[lane];
+                    std::array::from_fn(|j| component.scattering[j] + component.absorption[j])
+                }
+            })
+            .collect();
+        let mut exact = Exact { medium, shape, steps: Vec::new(), lanes, by_wavelength, extinction, tolerance };
+        exact.steps = steps(medium);
+        let nodes = exact.altitudes();
+        exact.cut(&nodes);
+        let densities = nodes.windows(2).flat_map(|ends| exact.ends(ends[0], ends[1])).collect();
+        let (limb, ground) = match shape {
+            // One row serves all directions; a second copy closes the cell.
+            Shape::Flat => {
+                let rows = exact.rows(vec![(0.0, exact.row(0.0, &nodes)), (1.0, exact.row(0.0, &nodes))]);
+                (rows.clone(), rows)
+            }
+            Shape::Sphere { radius_m } => (exact.limb(&nodes), exact.ground(radius_m, &nodes)),
+        };
+        let Exact { extinction, .. } = exact;
+        Self { shape, lanes, extinction, altitudes: Lookup::new(nodes), densities, limb, ground }
+    }
+}
+
+/// The medium's intervals, divided so that no density changes much within a step.
+fn steps<const L: usize>(medium: &Medium<L>) -> Vec<Step> {
+    let mut steps = Vec::new();
+    for (interval, ends) in medium.nodes().windows(2).enumerate() {
+        let parts = (medium.most_rise(interval) / MOST_CHANGE).ceil().clamp(1.0, 64.0);
+        let at = |i: u32| ends[0] + (ends[1] - ends[0]) * f64::from(i) / parts;
+        for i in 0..parts as u32 {
+            let top = if f64::from(i + 1) < parts { at(i + 1) } else { ends[1] };
+            steps.push(Step { bottom: at(i), top, interval });
+        }
+    }
+    steps
+}
+
+impl<const L: usize> Exact<'_, L> {
+    /// Densities of all lanes at an altitude of an interval.
+    fn density(&self, interval: usize, altitude: f64) -> Vec<f64> {
+        let nodes = self.medium.nodes();
+        let (a, b) = (nodes[interval], nodes[interval + 1]);
+        let fraction = ((altitude - a) / (b - a)).clamp(0.0, 1.0);
+        if self.by_wavelength {
+            self.medium.extinction_in(interval, fraction).to_vec()
+        } else {
+            self.medium.densities(interval, fraction)[..self.lanes].to_vec()
+        }
+    }
+
+    /// Optical depth at each wavelength of the columns of all lanes.
+    fn depth(&self, columns: &[f64]) -> [f64; L] {
+        let mut depth = [0.0; L];
+        for (column, sigma) in columns.iter().zip(&self.extinction) {
+            for (depth, sigma) in depth.iter_mut().zip(sigma) {
+                *depth += column * sigma;
+            }
+        }
+        depth
+    }
+
+    /// Densities at the bottom and the top of a cell of the table, from inside.
+    fn ends(&self, bottom: f64, top: f64) -> Vec<f64> {
+        let first = self.steps.partition_point(|s| s.top <= bottom);
+        let last = self.steps.partition_point(|s| s.bottom < top) - 1;
+        let mut both = self.density(self.steps[first].interval, bottom);
+        both.extend(self.density(self.steps[last].interval, top));
+        both
+    }
+
+    /// Makes no step reach over a node.
+    fn cut(&mut self, nodes: &[f64]) {
+        let mut cut = Vec::with_capacity(self.steps.len() + nodes.len());
+        let mut node = 0;
+        for &step in &self.steps {
+            let mut rest = step;
+            while node < nodes.len() && nodes[node] < rest.top {
+                if nodes[node] > rest.bottom {
+                    cut.push(Step { top: nodes[node], ..rest });
+                    rest.bottom = nodes[node];
+                }
+                node += 1;
+            }
+            cut.push(rest);
+        }
+        self.steps = cut;
+    }
+
+    /// Distance from the perigee `p` to the altitude `h` in m.
+    fn distance(&self, p: f64, h: f64) -> f64 {
+        match self.shape {
+            Shape::Flat => h,
+            Shape::Sphere { radius_m } => ((h - p) * (2.0 * radius_m + h + p)).max(0.0).sqrt(),
+        }
+    }
+
+    /// Altitude at the distance `s` from the perigee `p`.
+    fn altitude(&self, p: f64, s: f64) -> f64 {
+        match self.shape {
+            Shape::Flat => s,
+            Shape::Sphere { radius_m } => {
+                let r = radius_m + p;
+                p + s * s / (r + (r * r + s * s).sqrt())
+            }
+        }
+    }
+
+    /// Columns of one step above the altitude `from`, added to `columns`.
+    fn add_step(&self, p: f64, from: f64, step: Step, columns: &mut [f64]) {
+        let (a, b) = (self.distance(p, step.bottom.max(from)), self.distance(p, step.top));
+        let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
+        for (x, weight) in GAUSS_4 {
+            let density = self.density(step.interval, self.altitude(p, middle + half * x));
+            for (column, density) in columns.iter_mut().zip(density) {
+                *column += weight * half * density;
+            }
+        }
+    }
+
+    /// The row of the line with perigee `p`: from the perigee, or from the ground if that is below it.
+    fn row(&self, p: f64, nodes: &[f64]) -> Row {
+        let from = p.max(0.0);
+        let mut columns = vec![0.0; nodes.len() * self.lanes];
+        let mut sum = vec![0.0; self.lanes];
+        let first = self.steps.partition_point(|s| s.top <= from).min(self.steps.len() - 1);
+        let mut node = nodes.partition_point(|&z| z <= from);
+        for &step in &self.steps[first..] {
+            self.add_step(p, from, step, &mut sum);
+            if node < nodes.len() && step.top >= nodes[node] {
+                columns[node * self.lanes..(node + 1) * self.lanes].copy_from_slice(&sum);
+                node += 1;
+            }
+        }
+        let distances = nodes.iter().map(|&z| self.distance(p, z.max(p))).collect();
+        Row { distances, columns, start: self.density(self.steps[first].interval, from) }
+    }
+
+    /// Nodes of altitude: jumps, and bisection until the means between them hold.
+    fn altitudes(&self) -> Vec<f64> {
+        let intervals = self.medium.nodes();
+        let mut kept = vec![0.0];
+        let mut at = 0;
+        for i in 1..intervals.len() {
+            if i + 1 == intervals.len() || self.jumps(i) {
+                self.divide(intervals[at], intervals[i], 0, &mut kept);
+                at = i;
+            }
+        }
+        kept
+    }
+
+    /// Whether a density jumps at node `i` of the medium.
+    fn jumps(&self, i: usize) -> bool {
+        let z = self.medium.nodes()[i];
+        let (below, above) = (self.depth(&self.density(i - 1, z)), self.depth(&self.density(i, z)));
+        below.iter().zip(&above).any(|(a, b)| (a - b).abs() > 1e-9 * (a.abs() + b.abs()))
+    }
+
+    /// Whether a density jumps at an altitude.
+    fn jumps_at(&self, altitude: f64) -> bool {
+        let nodes = self.medium.nodes();
+        let i = nodes.partition_point(|&z| z < altitude);
+        i > 0 && i + 1 < nodes.len() && nodes[i] == altitude && self.jumps(i)
+    }
+
+    /// Appends to `kept` the nodes in (bottom, top] that are needed.
+    fn divide(&self, bottom: f64, top: f64, depth: u32, kept: &mut Vec<f64>) {
+        const DEEPEST: u32 = 12;
+        if depth == DEEPEST || self.cell_holds(bottom, top) {
+            kept.push(top);
+            return;
+        }
+        // At a kink of the profile if there is one near the middle.
+        let middle = 0.5 * (bottom + top);
+        let nodes = self.medium.nodes();
+        let i = nodes.partition_point(|&z| z < middle);
+        let near = [i.saturating_sub(1), i].map(|i| nodes[i.min(nodes.len() - 1)]);
+        let middle = near
+            .into_iter()
+            .filter(|z| (z - middle).abs() < 0.25 * (top - bottom))
+            .min_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()))
+            .unwrap_or(middle);
+        self.divide(bottom, middle, depth + 1, kept);
+        self.divide(middle, top, depth + 1, kept);
+    }
+
+    /// Whether the means between two altitudes are as good as asked at seven places between, on lines that begin in
+    /// the cell, below it, far below it, and on steeper ones.
+    fn cell_holds(&self, bottom: f64, top: f64) -> bool {
+        const PARTS: u32 = 8;
+        let ends = self.ends(bottom, top);
+        let (low, high) = ends.split_at(self.lanes);
+        let thickness = top - bottom;
+        let mut lines = vec![0.0];
+        if let Shape::Sphere { radius_m } = self.shape {
+            lines.extend([0.0, 1.0, 4.0].map(|cells| (bottom - cells * thickness).max(0.0)));
+            lines.extend([5e-4, 5e-3, 5e-2, 0.999].map(|share| -share * radius_m));
+        }
+        // Planes are crossed at any slant.
+        let slant = if self.shape == Shape::Flat { 10.0 } else { 1.0 };
+        lines.into_iter().all(|p| {
+            let start = p.max(0.0);
+            let origin = self.distance(p, start);
+            let mut column = vec![0.0; self.lanes];
+            self.add_between(p, start, bottom, &mut column);
+            let mut columns = vec![column];
+            for i in 1..=PARTS {
+                let [from, to] = [i - 1, i].map(|i| bottom + thickness * f64::from(i) / f64::from(PARTS));
+                let mut column = columns[columns.len() - 1].clone();
+                self.add_between(p, from, to, &mut column);
+                columns.push(column);
+            }
+            let length = |h: f64| self.distance(p, h) - origin;
+            let (a, b) = (length(bottom), length(top));
+            (1..PARTS).all(|i| {
+                let t = f64::from(i) / f64::from(PARTS);
+                let here = length(bottom + t * thickness);
+                let off: Vec<f64> = (0..self.lanes)
+                    .map(|lane| {
+                        let upper = columns[PARTS as usize][lane] / b;
+                        let upper_slope = (high[lane] - upper) * thickness * self.stretch(p, top) / b;
+                        let [mean, _] = if a > 0.0 {
+                            let lower = columns[0][lane] / a;
+                            let lower_slope = (low[lane] - lower) * thickness * self.stretch(p, bottom) / a;
+                            mean_between(t, (lower, lower_slope), (upper, upper_slope))
+                        } else {
+                            mean_from_start(t, low[lane], (upper, upper_slope))
+                        };
+                        mean * here - columns[i as usize][lane]
+                    })
+                    .collect();
+                self.depth(&off).iter().all(|e| slant * e.abs() <= self.tolerance.depth)
+            })
+        })
+    }
+
+    /// Columns of the line with perigee `p` between two altitudes, added to `columns`.
+    fn add_between(&self, p: f64, from: f64, to: f64, columns: &mut [f64]) {
+        let first = self.steps.partition_point(|s| s.top <= from).min(self.steps.len() - 1);
+        for &step in self.steps[first..].iter().take_while(|s| s.bottom < to) {
+            self.add_step(p, from, Step { top: step.top.min(to), ..step }, columns);
+        }
+    }
+
+    /// ds/dh at an altitude of the line with perigee `p`.
+    fn stretch(&self, p: f64, h: f64) -> f64 {
+        match self.shape {
+            Shape::Flat => 1.0,
+            Shape::Sphere { radius_m } => (radius_m + h) / self.distance(p, h),
+        }
+    }
+
+    /// Whether the row in the middle of two is their mean, as seen from the start of the line and from the top; `from` is
+    /// the first node that counts.
+    fn mean_holds(&self, row_a: &Row, row_b: &Row, middle: &Row, from: usize) -> bool {
+        let off: Vec<([f64; L], [f64; L])> = (from..row_a.distances.len())
+            .map(|k| {
+                let [length, length_a, length_b] =
+                    [middle, row_a, row_b].map(|row| row.distances[k] - row.distances[0]);
+                let here = k * self.lanes..(k + 1) * self.lanes;
+                let off: Vec<f64> = here
+                    .clone()
+                    .enumerate()
+                    .map(|(lane, i)| {
+                        let mean = |row: &Row, length: f64| {
+                            if length > 0.0 { row.columns[i] / length } else { row.start[lane] }
+                        };
+                        0.5 * (mean(row_a, length_a) + mean(row_b, length_b)) * length - middle.columns[i]
+                    })
+                    .collect();
+                (self.depth(&off), self.depth(&middle.columns[here]))
+            })
+            .collect();
+        let (whole_off, whole) = off[off.len() - 1];
+        off.iter().all(|(off, tau)| {
+            (0..L).all(|j| {
+                off[j].abs() <= self.tolerance.allowed(tau[j])
+                    && (whole_off[j] - off[j]).abs() <= self.tolerance.allowed(whole[j] - tau[j])
+            })
+        })
+    }
+
+    /// Rows between two, wherever their mean does not hold; `from` is the first node that counts.
+    fn refine(
+        &self,
+        (a, row_a): (f64, Row),
+        (b, row_b): (f64, Row),
+        perigee: &(dyn Fn(f64) -> f64 + Sync),
+        nodes: &[f64],
+        from: usize,
+    ) -> Vec<(f64, Row)> {
+        let mut done = vec![(a, row_a)];
+        let mut todo = vec![(b, row_b)];
+        while let Some((x, row)) = todo.pop() {
+            let (last, last_row) = &done[done.len() - 1];
+            let middle = 0.5 * (last + x);
+            let fits = done.len() + todo.len() >= MOST_ROWS || middle <= *last || middle >= x;
+            let between = if fits { None } else { Some(self.row(perigee(middle), nodes)) };
+            match between {
+                Some(between) if !self.mean_holds(last_row, &row, &between, from) => {
+                    todo.push((x, row));
+                    todo.push((middle, between));
+                }
+                _ => done.push((x, row)),
+            }
+        }
+        done
+    }
+
+    /// Rows for lines above the ground: every node of altitude is a perigee, with others between.
+    fn limb(&self, nodes: &[f64]) -> Rows {
+        let cells: Vec<Vec<(f64, Row)>> = (0..nodes.len() - 1)
+            .into_par_iter()
+            .map(|i| {
+                // The upper row still begins in this cell: below a jump, if there is one.
+                let below = if self.jumps_at(nodes[i + 1]) { nodes[i + 1] - BELOW_A_JUMP } else { nodes[i + 1] };
+                let [a, b] = [nodes[i], below].map(|p| (p, self.row(p, nodes)));
+                let mut rows = self.refine(a, b, &|p| p, nodes, i + 1);
+                if below == nodes[i + 1] {
+                    rows.pop();
+                }
+                rows
+            })
+            .collect();
+        let top = nodes[nodes.len() - 1];
+        let mut rows: Vec<_> = cells.into_iter().flatten().collect();
+        rows.push((top, self.row(top, nodes)));
+        self.rows(rows)
+    }
+
+    /// Rows for lines that cut the planet, by the cosine of the zenith angle at the ground.
+    fn ground(&self, radius_m: f64, nodes: &[f64]) -> Rows {
+        // Close enough that the middle of two tells of all between.
+        const FIRST: usize = 32;
+        let cosines: Vec<f64> = (0..=FIRST).map(|i| (i as f64 / FIRST as f64).powi(3)).collect();
+        let perigee = |mu: f64| -radius_m * mu * mu / (1.0 + ((1.0 - mu) * (1.0 + mu)).sqrt());
+        let cells: Vec<Vec<(f64, Row)>> = cosines
+            .par_windows(2)
+            .map(|ends| {
+                let [a, b] = [ends[0], ends[1]].map(|mu| (mu, self.row(perigee(mu), nodes)));
+                let mut rows = self.refine(a, b, &perigee, nodes, 1);
+                rows.pop();
+                rows
+            })
+            .collect();
+        let mut rows: Vec<_> = cells.into_iter().flatten().collect();
+        rows.push((1.0, self.row(perigee(1.0), nodes)));
+        self.rows(rows)
+    }
+
+    /// Packs rows as the tables hold them: mean densities, below its start that of the start.
+    fn rows(&self, rows: Vec<(f64, Row)>) -> Rows {
+        let (mut means, mut starts) = (Vec::new(), Vec::new());
+        for (_, row) in &rows {
+            let start = row.distances[0];
+            for k in 0..row.distances.len() {
+                for lane in 0..self.lanes {
+                    let (column, length) = (row.columns[k * self.lanes + lane], row.distances[k] - start);
+                    let mean = if length > 0.0 { column / length } else { row.start[lane] };
+                    means.push(mean as f32);
+                }
+            }
+            starts.extend(&row.start);
+        }
+        Rows { at: Lookup::new(rows.into_iter().map(|(at, _)| at).collect()), means, starts }
+    }
+}
+
+/// The mean density at the fraction t of a cell's height and its derivative by t, from (value, derivative by t) at both ends:
+/// the cubic that has them.
+#[inline]
+pub(super) fn mean_between(t: f64, (low, low_slope): (f64, f64), (high, high_slope): (f64, f64)) -> [f64; 2] {
+    let rest = 1.0 - t;
+    let rise = high - low;
+    [
+        low + t * t * (3.0 - 2.0 * t) * rise + t * rest * (rest * low_slope - t * high_slope),
+        6.0 * t * rest * rise + rest * (1.0 - 3.0 * t) * low_slope + t * (3.0 * t - 2.0) * high_slope,
+    ]
+}
+
+/// As [`mean_between`] in the cell where the line starts, with the density there: the parabola that has it and what the upper end has.
+#[inline]
+pub(super) fn mean_from_start(t: f64, start: f64, (high, high_slope): (f64, f64)) -> [f64; 2] {
+    let rest = 1.0 - t;
+    [
+        start * rest * rest + high * t * (2.0 - t) - high_slope * t * rest,
+        2.0 * rest * (high - start) + (2.0 * t - 1.0) * high_slope,
+    ]
+}

@@ -1,0 +1,222 @@
+//! Four skies on which other renderers were timed: what a direction and a picture cost.
+//!
+//! A planet of radius 6360 km with an atmosphere of 100 km and a ground of albedo 0.2, an eye 200 m up, a parallel
+//! sun of unit irradiance. Molecules: tau = 0.008569 l^-4 (1 + 0.0113 l^-2 + 0.00013 l^-4), l the wavelength in
+//! um (Hansen & Travis 1974), scale height 8 km, 3 / 16 pi (1 + cos^2). Ozone: 300 DU between 10 and 40 km, a triangle
+//! about 25 km, absorbing. Aerosol, in the last case: tau = 0.2 at 550 nm, albedo 0.92, scale height 1.2 km,
+//! Henyey-Greenstein 0.76. All as a table of 200 cells, linear between their centres.
+
+use crate::atmosphere::{Columns, Component, Medium, MediumError, Tolerance};
+use crate::geometry::{Place, Shape};
+use crate::light::SunDisc;
+use crate::phase::Phase;
+use crate::sampling::{POINTS, Sampler};
+use crate::transport::{self, Method, Problem};
+use glam::DVec3;
+use std::time::Instant;
+use tables::units::KM;
+use tables::{Axis, Curve, Outside, Scale};
+
+const RADIUS_M: f64 = 6360.0 * KM;
+const TOP_M: f64 = 100.0 * KM;
+const EYE_M: f64 = 200.0;
+const ALBEDO: f64 = 0.2;
+
+/// Sky pixels of the picture that costs are given for: a fisheye of 320 x 320.
+pub const PIXELS: f64 = 80_425.0;
+
+/// A sky of the bench.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Case {
+    /// What it is called.
+    pub name: &'static str,
+    /// Zenith angle of the sun in degrees.
+    pub sun_zenith_deg: f64,
+    /// Vertical optical depth of molecular scattering.
+    pub molecules: f64,
+    /// Cross-section of ozone in cm^2.
+    pub ozone_cm2: f64,
+    /// Vertical optical depth of aerosol.
+    pub aerosol: f64,
+    /// Directions: zenith angle and azimuth from the sun in degrees.
+    pub views: &'static [(f64, f64)],
+}
+
+/// Rayleigh optical depth at a wavelength in um.
+fn molecules(um: f64) -> f64 {
+    0.008_569 * um.powi(-4) * (1.0 + 0.0113 * um.powi(-2) + 0.000_13 * um.powi(-4))
+}
+
+const DAY: [(f64, f64); 6] = [(0.0, 0.0), (30.0, 90.0), (55.0, 0.0), (60.0, 180.0), (85.0, 90.0), (89.0, 180.0)];
+const TWILIGHT: [(f64, f64); 4] = [(0.0, 0.0), (60.0, 0.0), (85.0, 0.0), (85.0, 180.0)];
+
+/// The cases: by day at 450 and 680 nm, in twilight at 450 nm, and with aerosol at 550 nm.
+#[must_use]
+pub fn cases() -> [Case; 4] {
+    let case = |name, sun_zenith_deg, um, ozone_cm2, aerosol, views| Case {
+        name,
+        sun_zenith_deg,
+        molecules: molecules(um),
+        ozone_cm2,
+        aerosol,
+        views,
+    };
+    [
+        case("D450", 60.0, 0.45, 1.7e-22, 0.0, &DAY as &[_]),
+        case("D680", 60.0, 0.68, 1.36e-21, 0.0, &DAY),
+        case("A550", 60.0, 0.55, 3.3e-21, 0.2, &DAY),
+        case("T450", 95.0, 0.45, 1.7e-22, 0.0, &TWILIGHT),
+    ]
+}
+
+impl Case {
+    /// The medium at its one wavelength.
+    ///
+    /// # Errors
+    /// [`MediumError`] never: the coefficients are sound.
+    pub fn medium(&self) -> Result<Medium<1>, MediumError> {
+        const CELLS: u32 = 200;
+        let cell = TOP_M / f64::from(CELLS);
+        let mut nodes = vec![0.0];
+        nodes.extend((0..CELLS).map(|i| (f64::from(i) + 0.5) * cell));
+        nodes.push(TOP_M);
+        // The outer half cells hold the value of their centres.
+        let held = |z: f64| z.clamp(0.5 * cell, TOP_M - 0.5 * cell);
+        let axis = Axis::new("altitude", "m", nodes)?.beyond(Outside::Zero);
+        let curve = |density: &dyn Fn(f64) -> f64| {
+            Curve::new(axis.clone(), Scale::Linear, axis.nodes.iter().map(|&z| density(held(z))).collect())
+        };
+        let exponential = |scale: f64| move |z: f64| (-z / scale).exp() / scale;
+        let triangle = |z: f64| (1.0 - (z - 25.0 * KM).abs() / (15.0 * KM)).max(0.0) / (15.0 * KM);
+        let isotropic = Phase::Rayleigh { gamma: [0.0] };
+        let component = |density, scattering, absorption, phase| Component {
+            density,
+            scattering: [scattering],
+            absorption: [absorption],
+            phase,
+        };
+        // 300 DU are 8.06e18 molecules over each cm^2.
+        let mut components = vec![
+            component(curve(&exponential(8.0 * KM))?, self.molecules, 0.0, isotropic.clone()),
+            component(curve(&triangle)?, 0.0, self.ozone_cm2 * 8.06e18, isotropic),
+        ];
+        if self.aerosol > 0.0 {
+            let phase = Phase::HenyeyGreenstein { g: [0.76] };
+            let density = curve(&exponential(1.2 * KM))?;
+            components.push(component(density, 0.92 * self.aerosol, 0.08 * self.aerosol, phase));
+        }
+        Medium::new(components, TOP_M)
+    }
+}
+
+/// What one direction costs on one thread.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cost {
+    /// Zenith angle and azimuth from the sun in degrees.
+    pub view: (f64, f64),
+    /// Radiance per unit solar irradiance in sr^-1, and its standard error.
+    pub radiance: (f64, f64),
+    /// Relative standard deviation of one path by itself.
+    pub deviation: f64,
+    /// Seconds a path, the least of several batches.
+    pub seconds_per_path: f64,
+    /// Paths of one low-discrepancy sequence for a relative standard error of 1 %.
+    pub paths_to_1_percent: f64,
+}
+
+impl Cost {
+    /// Seconds for a relative standard error of 1 %.
+    #[must_use]
+    pub fn seconds_to_1_percent(&self) -> f64 {
+        self.seconds_per_path * self.paths_to_1_percent
+    }
+}
+
+/// Independent sequences whose spread is the error of one.
+const REPLICATES: u64 = 256;
+
+/// Measures one direction of a case: sequences of 1, 2, 4 ... points, [`REPLICATES`] of each length, until their spread is
+/// below 1 % (between two lengths by a power law) and `seconds` have passed.
+#[must_use]
+pub fn measure(
+    case: &Case,
+    (medium, columns): (&Medium<1>, &Columns<1>),
+    method: Method,
+    view: (f64, f64),
+    seconds: f64,
+) -> Cost {
+    let towards = |zenith: f64, azimuth: f64| {
+        let ((sin, cos), (sin_a, cos_a)) = (zenith.to_radians().sin_cos(), azimuth.to_radians().sin_cos());
+        DVec3::new(sin * cos_a, sin * sin_a, cos)
+    };
+    let sun = SunDisc::beam(towards(case.sun_zenith_deg, 0.0));
+    let problem = Problem {
+        shape: Shape::Sphere { radius_m: RADIUS_M },
+        medium,
+        columns,
+        albedo: [ALBEDO],
+        sun: Some(&sun),
+        environment: None,
+        max_orders: None,
+    };
+    let (place, direction) = (Place::above(EYE_M), towards(view.0, view.1));
+    let start = Instant::now();
+    let mut cost = Cost {
+        view,
+        radiance: (0.0, f64::INFINITY),
+        deviation: 0.0,
+        seconds_per_path: f64::INFINITY,
+        paths_to_1_percent: f64::NAN,
+    };
+    let mut last: Option<(f64, f64)> = None;
+    let mut points = 1_u64;
+    while points <= POINTS {
+        let (mut mean, mut squares) = (0.0, 0.0);
+        for replicate in 0..REPLICATES {
+            let batch = Instant::now();
+            let sum: f64 = (0..points)
+                .map(|point| {
+                    let mut sampler = Sampler::sobol(points, 0, replicate, point as u32);
+                    transport::radiance(method, &problem, place, direction, &mut sampler)[0]
+                })
+                .sum();
+            // Short batches are timed with the clock's own steps.
+            if points >= 32 {
+                cost.seconds_per_path = cost.seconds_per_path.min(batch.elapsed().as_secs_f64() / points as f64);
+            }
+            let value = sum / points as f64;
+            let off = value - mean;
+            mean += off / (replicate + 1) as f64;
+            squares += off * (value - mean);
+        }
+        let spread = (squares / (REPLICATES - 1) as f64).sqrt();
+        cost.radiance = (mean, spread / (REPLICATES as f64).sqrt());
+        let relative = spread / mean;
+        if points == 1 {
+            cost.deviation = relative;
+        }
+        if cost.paths_to_1_percent.is_nan() && relative <= 0.01 {
+            cost.paths_to_1_percent = match last {
+                Some((fewer, before)) => {
+                    // relative = c n^-a between the two.
+                    let power = (before / relative).ln() / (points as f64 / fewer).ln();
+                    fewer * (before / 0.01).powf(1.0 / power)
+                }
+                None => 1.0,
+            };
+        }
+        last = Some((points as f64, relative));
+        let enough = !cost.paths_to_1_percent.is_nan() && points >= 64;
+        if enough && start.elapsed().as_secs_f64() >= seconds {
+            break;
+        }
+        points *= 2;
+    }
+    cost
+}
+
+/// The columns of a case's medium.
+#[must_use]
+pub fn columns(medium: &Medium<1>) -> Columns<1> {
+    Columns::new(medium, Shape::Sphere { radius_m: RADIUS_M }, Tolerance::RENDER)
+}
