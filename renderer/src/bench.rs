@@ -135,7 +135,7 @@ impl Cost {
 /// Independent sequences whose spread is the error of one.
 const REPLICATES: u64 = 256;
 
-/// Measures one direction of a case: sequences of 1, 2, 4 ... points, [`REPLICATES`] of each length, until their spread is
+/// Measures one direction of a case: sequences of 1, 2, 4 ... points, 256 of each length, until their spread is
 /// below 1 % (between two lengths by a power law) and `seconds` have passed.
 #[must_use]
 pub fn measure(

@@ -37,7 +37,7 @@ pub(super) struct RenderArgs {
     #[arg(long, help_heading = "Files")]
     pub quiet: bool,
 
-    /// Estimator: paths made to collide on every ray, or the brute-force judge [default: paths]
+    /// Estimator: paths on column tables, or the brute-force judge [default: paths]
     #[arg(long, value_name = "METHOD", help_heading = "Sampling")]
     pub method: Option<MethodName>,
     /// Samples per pixel, 1 to 1000000; with --error the most of them [default: 64]
@@ -165,7 +165,7 @@ pub(super) struct RadianceArgs {
     /// Which cases
     #[arg(long, default_value = "core")]
     pub tier: TierName,
-    /// Estimator: paths made to collide on every ray, or the brute-force judge
+    /// Estimator: paths on column tables, or the brute-force judge
     #[arg(long, value_name = "METHOD", default_value = "paths")]
     pub method: MethodName,
     /// Standard error of each case relative to its value, 1e-5 to 1: 1% or 0.01 [default: 1%]
