@@ -5,6 +5,7 @@ use crate::mie::{
     AngularTable, Efficiencies, Instructions, MieError, RefractiveIndex, SIZE_PARAMETERS, Spheres, terms,
 };
 use serde::Deserialize;
+use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -56,6 +57,13 @@ impl Alike {
     /// # Errors
     /// [`TaskError`] for a malformed input, no sphere, more than one index, or one that is none.
     pub fn parse(text: &str) -> Result<Self, TaskError> {
+        // A row of thousands of fields would take many times the memory of its text.
+        if let Some(i) = text.lines().position(|line| line.bytes().filter(|&b| b == b',').count() >= MOST_FIELDS) {
+            return Err(TaskError::Input(format!(
+                "line {}: more than {MOST_FIELDS} fields, x, m_re, m_im are expected",
+                i + 1
+            )));
+        }
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         let mut rows: Vec<(f64, f64, f64)> = Vec::new();
         for row in reader.deserialize() {
@@ -84,24 +92,88 @@ impl Alike {
     }
 }
 
+/// The most fields of a line.
+const MOST_FIELDS: usize = 16;
+
+/// The most numbers of a list of task (b).
+const MOST_NUMBERS: usize = 1 << 16;
+
 /// One size distribution of task (b).
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 struct Mode {
     /// um.
+    #[serde(deserialize_with = "numbers")]
     wavelengths: Vec<f64>,
     /// um.
+    #[serde(deserialize_with = "numbers")]
     r: Vec<f64>,
+    #[serde(deserialize_with = "numbers")]
     w: Vec<f64>,
     m_re: f64,
     m_im: f64,
 }
 
-/// The input of task (b).
+/// A list of at most [`MOST_NUMBERS`].
 #[derive(Deserialize)]
+#[serde(transparent)]
+struct Numbers(#[serde(deserialize_with = "numbers")] Vec<f64>);
+
+/// For `#[serde(deserialize_with)]`: a list of at most [`MOST_NUMBERS`].
+fn numbers<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f64>, D::Error> {
+    struct List;
+    impl<'de> Visitor<'de> for List {
+        type Value = Vec<f64>;
+
+        fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            write!(f, "a list of at most {MOST_NUMBERS} numbers")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut from: A) -> Result<Vec<f64>, A::Error> {
+            let mut list = Vec::new();
+            while let Some(number) = from.next_element()? {
+                if list.len() == MOST_NUMBERS {
+                    return Err(A::Error::custom(format_args!("a list of more than {MOST_NUMBERS} numbers")));
+                }
+                list.push(number);
+            }
+            list.shrink_to_fit();
+            Ok(list)
+        }
+    }
+    from.deserialize_seq(List)
+}
+
+/// The input of task (b): the angles, and every other key a mode, the later of two with one name.
+#[derive(Default)]
 struct Input {
-    angles_deg: Vec<f64>,
-    #[serde(flatten)]
+    angles_deg: Option<Vec<f64>>,
     modes: BTreeMap<String, Mode>,
+}
+
+impl<'de> Deserialize<'de> for Input {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct Object;
+        impl<'de> Visitor<'de> for Object {
+            type Value = Input;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("an object of angles_deg and modes")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut from: A) -> Result<Input, A::Error> {
+                let mut input = Input::default();
+                while let Some(key) = from.next_key::<String>()? {
+                    if key == "angles_deg" {
+                        input.angles_deg = Some(from.next_value::<Numbers>()?.0);
+                    } else {
+                        input.modes.insert(key, from.next_value()?);
+                    }
+                }
+                Ok(input)
+            }
+        }
+        from.deserialize_map(Object)
+    }
 }
 
 /// Task (b): sums over size distributions, at some angles.
@@ -121,6 +193,7 @@ impl Distributions {
     /// [`TaskError`] for a malformed input or a size parameter out of range.
     pub fn parse(text: &str) -> Result<Self, TaskError> {
         let input: Input = serde_json::from_str(text).map_err(|e| TaskError::Input(e.to_string()))?;
+        let angles_deg = input.angles_deg.ok_or_else(|| TaskError::Input("no angles_deg".into()))?;
         let (mut modes, mut largest) = (Vec::with_capacity(input.modes.len()), 0.0_f64);
         for (name, mode) in input.modes {
             if mode.r.len() != mode.w.len() || mode.r.is_empty() {
@@ -138,7 +211,7 @@ impl Distributions {
             }
             modes.push((name, RefractiveIndex::new(mode.m_re, -mode.m_im)?, mode));
         }
-        Ok(Self { cosines: input.angles_deg.into_iter().map(cosine).collect(), modes, largest })
+        Ok(Self { cosines: angles_deg.into_iter().map(cosine).collect(), modes, largest })
     }
 
     /// For each mode and wavelength `mode`, `iw`, `Cext` and `Csca` (sum of w pi r^2 Q in um^2), `g`, and at each angle j
