@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::time::{Duration, Instant};
+use tables::excerpt;
 
 /// Why a task cannot be done.
 #[derive(Debug, thiserror::Error)]
@@ -67,7 +68,7 @@ impl Alike {
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         let mut rows: Vec<(f64, f64, f64)> = Vec::new();
         for row in reader.deserialize() {
-            rows.push(row.map_err(|e: csv::Error| TaskError::Input(e.to_string()))?);
+            rows.push(row.map_err(|e: csv::Error| TaskError::Input(excerpt(&e.to_string())))?);
         }
         let Some(&(_, n, minus_k)) = rows.first() else { return Err(TaskError::Input("no spheres".into())) };
         if let Some(i) = rows.iter().position(|row| (row.1, row.2) != (n, minus_k)) {
@@ -192,12 +193,13 @@ impl Distributions {
     /// # Errors
     /// [`TaskError`] for a malformed input or a size parameter out of range.
     pub fn parse(text: &str) -> Result<Self, TaskError> {
-        let input: Input = serde_json::from_str(text).map_err(|e| TaskError::Input(e.to_string()))?;
+        let input: Input = serde_json::from_str(text).map_err(|e| TaskError::Input(excerpt(&e.to_string())))?;
         let angles_deg = input.angles_deg.ok_or_else(|| TaskError::Input("no angles_deg".into()))?;
         let (mut modes, mut largest) = (Vec::with_capacity(input.modes.len()), 0.0_f64);
         for (name, mode) in input.modes {
             if mode.r.len() != mode.w.len() || mode.r.is_empty() {
                 let (r, w) = (mode.r.len(), mode.w.len());
+                let name = excerpt(&name);
                 return Err(TaskError::Input(format!("{name}: {r} radii and {w} weights; as many of each are needed")));
             }
             for x in
