@@ -19,11 +19,11 @@ const AIR_OR_GROUND: (f64, f64) = (0.1, 0.9);
 /// The sun counts as low on a line if the sine of its elevation is below this at either end.
 const LOW_SUN: f64 = 0.05;
 
-/// Nodes on the line of sight.
-const FIRST: u32 = 8;
+/// Nodes on the line of sight by day: more would make single scattering smoother than the later orders let be seen.
+const DAY: u32 = 2;
 
-/// Nodes on each later line where the sun is low.
-const LATER: u32 = 8;
+/// Nodes on each line where the sun is low.
+const LOW: u32 = 8;
 
 /// Radiance along one path.
 pub(super) fn trace<const L: usize>(
@@ -58,7 +58,7 @@ pub(super) fn trace<const L: usize>(
         if let Some((sun, light)) = &sun
             && (order == 1 || low)
         {
-            let quadrature = Quadrature { low, hero, nodes: if order == 1 { FIRST } else { LATER }, comb };
+            let quadrature = Quadrature { low, hero, nodes: if low { LOW } else { DAY }, comb };
             line(problem, &chord, (place, direction), (*sun, light), quadrature, &carried, &mut sum);
         }
         let reflects = chord.ends_on_ground() && problem.albedo.iter().any(|&albedo| albedo > 0.0);

@@ -30,6 +30,8 @@ pub struct Chord<'a, const L: usize> {
     from: f64,
     to: f64,
     ground: bool,
+    /// Columns of the lanes at `from`.
+    passed: Lanes,
 }
 
 /// What a table says at a point of a chord.
@@ -74,8 +76,9 @@ impl<const L: usize> Columns<L> {
                     from,
                     to,
                     ground: mu < 0.0,
+                    passed: [0.0; MAX_COMPONENTS],
                 };
-                (to > from || chord.ground).then_some(chord)
+                (to > from || chord.ground).then(|| chord.begun())
             }
             Shape::Sphere { radius_m } => self.spherical(radius_m, h, mu),
         }
@@ -122,8 +125,9 @@ impl<const L: usize> Columns<L> {
             },
             to,
             ground,
+            passed: [0.0; MAX_COMPONENTS],
         };
-        (to > chord.from || ground).then_some(chord)
+        (to > chord.from || ground).then(|| chord.begun())
     }
 
     /// Transmittance at each wavelength from `place` in the unit `direction` out to space; `None` if the planet is in the way.
@@ -201,34 +205,35 @@ impl<const L: usize> Chord<'_, L> {
         }
     }
 
-    /// Optical depth of the whole chord.
+    /// The chord with the columns of its beginning.
+    #[inline]
+    fn begun(mut self) -> Self {
+        self.passed = self.column_and_slope(self.from).0;
+        self
+    }
+
+    /// Optical depth of the whole chord: it ends on the ground, from which columns count, or at the last node.
     #[must_use]
     #[inline]
     pub fn total(&self) -> [f64; L] {
-        self.columns.depths(&self.difference(self.to))
+        let last = self.columns.altitudes.nodes().len() - 1;
+        let length = if self.ground { 0.0 } else { self.to - self.origin };
+        let mut column = [0.0; MAX_COMPONENTS];
+        for (lane, column) in column.iter_mut().enumerate().take(self.columns.lanes) {
+            *column = self.node_mean(last, lane) * length - self.passed[lane];
+        }
+        self.columns.depths(&column)
     }
 
     /// Optical depth from the beginning to a point of the chord, and its slope there.
     #[must_use]
     #[inline]
     pub fn point(&self, s: f64) -> Point<L> {
-        let (column, slope) = self.column_and_slope(s);
-        let (start, _) = self.column_and_slope(self.from);
-        let mut passed = [0.0; MAX_COMPONENTS];
-        for lane in 0..self.columns.lanes {
-            passed[lane] = column[lane] - start[lane];
+        let (mut column, slope) = self.column_and_slope(s);
+        for (column, passed) in column.iter_mut().zip(&self.passed) {
+            *column -= passed;
         }
-        Point { depth: self.columns.depths(&passed), slope: self.columns.depths(&slope) }
-    }
-
-    #[inline]
-    fn difference(&self, s: f64) -> Lanes {
-        let (mut column, _) = self.column_and_slope(s);
-        let (start, _) = self.column_and_slope(self.from);
-        for lane in 0..self.columns.lanes {
-            column[lane] -= start[lane];
-        }
-        column
+        Point { depth: self.columns.depths(&column), slope: self.columns.depths(&slope) }
     }
 
     /// Distance in m from the perigee at which the line passes an altitude in m.
@@ -341,8 +346,7 @@ impl<const L: usize> Chord<'_, L> {
     /// chord's end if it does not.
     #[must_use]
     pub fn at_depth(&self, hero: usize, depth: f64) -> f64 {
-        let (start, _) = self.column_and_slope(self.from);
-        let target = self.hero(hero, &start) + depth;
+        let target = self.hero(hero, &self.passed) + depth;
         // Before the perigee columns count backwards.
         let s = self.invert(hero, target.abs()).copysign(target);
         s.clamp(self.from, self.to)
@@ -389,7 +393,7 @@ impl<const L: usize> Chord<'_, L> {
                 slope += derivative * sigma[hero];
             }
             let off = mean * length - target;
-            if off.abs() <= 1e-12 * rise {
+            if off.abs() <= 1e-10 * rise {
                 break;
             }
             if off > 0.0 {
