@@ -5,7 +5,9 @@
 //! be, 130 stopped by Ctrl-C (what was there is written first).
 
 mod args;
+mod merge;
 mod output;
+mod picture;
 mod progress;
 mod radiance;
 mod render;
@@ -20,6 +22,8 @@ use std::process::ExitCode;
 enum Command {
     /// Render a picture: EXR to calculate with, PNG to look at
     Render(Box<args::RenderArgs>),
+    /// Put runs with different seeds or shards together as one picture
+    Merge(args::MergeArgs),
     /// Answer a file of reference cases: radiances with their standard errors
     Radiance(args::RadianceArgs),
 }
@@ -57,6 +61,7 @@ impl From<SceneError> for Failure {
 pub fn main() -> ExitCode {
     let outcome = match Command::parse() {
         Command::Render(args) => render::run(&args),
+        Command::Merge(args) => merge::run(&args),
         Command::Radiance(args) => radiance::run(&args),
     };
     match outcome.and_then(|outcome| output::finish().map(|()| outcome)) {
