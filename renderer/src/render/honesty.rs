@@ -1,6 +1,8 @@
 //! Whether the errors that pictures state are those that they have: many runs with different seeds, in each group of
 //! pixels the mean over runs of the stated variance beside the variance over runs of the mean.
 
+#![allow(clippy::print_stdout, reason = "the figures found: cargo test -- --nocapture shows them")]
+
 use super::*;
 use crate::atmosphere::HazePhase;
 use crate::data::Data;
