@@ -2,7 +2,8 @@
 
 use super::Form;
 use crate::root;
-use renderer::film::exr;
+use renderer::film::{Film, exr};
+use renderer::render::{Head, Part, Shard, State};
 use renderer::scene::Scene;
 use std::path::Path;
 use tables::{Table, TableError, file, views};
@@ -155,6 +156,7 @@ pub fn targets() -> Vec<Target> {
     let length = (full.len() as u32).to_le_bytes();
     let picture = [picture.concat(), length.to_vec(), full, b"\0and pixels".to_vec()].concat();
     add("picture", Form::Binary, true, vec![picture], picture_scene);
+    add("state", Form::Binary, true, vec![run_state()], state);
     let cases = ["radiances", "renderers"].map(|name| file(&format!("tests/reference/{name}.json")));
     add("radiance cases", Form::Text, false, cases.into(), |bytes| {
         renderer::cases::parse(Path::new("input.json"), bytes).map(drop).map_err(|e| e.to_string())
@@ -194,4 +196,24 @@ fn scene(bytes: &[u8]) -> Result<(), String> {
 fn picture_scene(bytes: &[u8]) -> Result<(), String> {
     let json = exr::text_attribute(bytes, "airlight.scene").map_err(|e| e.to_string())?;
     scene(json.ok_or("a picture that carries no scene")?.as_bytes())
+}
+
+/// A state as `airlight render --checkpoint` writes it, of a small picture.
+fn run_state() -> Vec<u8> {
+    let scene = Scene { width: Some(3), height: Some(2), biome: Some(views::Biome::Urban), ..Scene::default() };
+    let mut film = Film::new(3, 2, vec![1.5; scene.wavelengths_nm.nm().len()]);
+    for row in &mut film.rows_mut() {
+        row.add(1, &vec![0.25; scene.wavelengths_nm.nm().len()], [1.0, 2.0, 3.0]);
+    }
+    let parts = (1..=2).filter_map(|index| Shard::new(index, 2).ok()).map(|shard| Part { seed: 1, shard }).collect();
+    Head { program: "airlight".into(), scene, tables: "sun.table 00c0ffee Sun".into(), parts }.encode(&film)
+}
+
+/// Decodes a state whose checksum is made right, for nothing behind it would be seen otherwise.
+fn state(bytes: &[u8]) -> Result<(), String> {
+    let mut bytes = bytes.to_vec();
+    if let Some((head, rest)) = bytes.split_at_mut_checked(16) {
+        head[12..].copy_from_slice(&crc32fast::hash(rest).to_le_bytes());
+    }
+    State::decode(&bytes).map(drop).map_err(|e| e.to_string())
 }

@@ -2,11 +2,13 @@
 
 use crate::atmosphere::{HazePhase, OzoneSource};
 use crate::cases::Tier;
+use crate::render::Shard;
 use crate::scene::{Albedo, CameraKind, Scene, SceneError, word};
 use crate::spectrum::Wavelengths;
 use crate::transport::Method;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use std::time::Duration;
 use tables::views::{AerosolSource, Biome};
 
 /// Flags of `airlight render`.
@@ -16,37 +18,41 @@ pub(super) struct RenderArgs {
     /// Scene to start from: JSON, or the EXR file of a picture, which carries it; flags override it
     #[arg(value_name = "SCENE")]
     pub scene: Option<PathBuf>,
-    /// EXR file to write; the PNG has the same name
-    #[arg(short, long, value_name = "FILE", default_value = "sky.exr", help_heading = "Files")]
-    pub output: PathBuf,
-    /// Folder of the tables
-    #[arg(long, value_name = "DIR", default_value = "data", help_heading = "Files")]
-    pub data: PathBuf,
+    #[command(flatten)]
+    pub files: PictureArgs,
     /// A table of your own (`airlight-tools import`): it replaces, for this picture, the one of its kind in --data, or
     /// adds a ground for --albedo; once for each kind. Those of the scene are then left out
     #[arg(long = "table", value_name = "FILE", help_heading = "Files")]
     pub tables: Vec<String>,
-    /// Write the spectral channels too (S0.550,000nm in W m^-2 sr^-1 nm^-1)
-    #[arg(long, help_heading = "Files")]
-    pub spectral: bool,
-    /// Exposure of the PNG, EV at ISO 100, -30 to 30: 1.2 * 2^EV cd/m^2 is white [default: the mean
-    /// logarithm of the luminance becomes 22 % of white]
-    #[arg(long, value_name = "EV", help_heading = "Files")]
-    pub exposure: Option<f64>,
-    /// Say nothing but errors
-    #[arg(long, help_heading = "Files")]
-    pub quiet: bool,
+    /// Keep the state of the run in this file, each minute and at the end, for --resume and `airlight merge`
+    /// [default: none; with --shard the picture's name with .state, with --resume its file]
+    #[arg(long, value_name = "FILE", help_heading = "Files")]
+    pub checkpoint: Option<PathBuf>,
+    /// Go on with the run whose state is in this file; more samples may be asked for, the scene stays
+    #[arg(long, value_name = "FILE", conflicts_with = "scene", help_heading = "Files")]
+    pub resume: Option<PathBuf>,
 
     /// Estimator: paths on column tables, or the brute-force judge [default: paths]
     #[arg(long, value_name = "METHOD", help_heading = "Sampling")]
     pub method: Option<MethodName>,
-    /// Samples per pixel, 1 to 1000000; with --error the most of them [default: 64]
+    /// Samples per pixel, 1 to 10^9, rounded up to whole blocks; with --error or --time the most of them [default: 64]
     #[arg(long, value_name = "N", help_heading = "Sampling")]
     pub spp: Option<u32>,
     /// Go on until sqrt(mean squared standard error) over mean radiance, the solar disc left
-    /// out, is at most this, 1e-5 to 1: 1% or 0.01
+    /// out, is at most this, 1e-5 to 1: 1% or 0.01; 16 blocks of each pixel at least
     #[arg(long, value_name = "E", value_parser = share, help_heading = "Sampling")]
     pub error: Option<f64>,
+    /// Go on for so long, 1s to 1000h, in whole passes over the picture, two blocks of each pixel at least: 30s, 5m or
+    /// 1.5h. The picture tells how many samples that were, so that it can be repeated
+    #[arg(long, value_name = "T", value_parser = time, help_heading = "Sampling")]
+    pub time: Option<Duration>,
+    /// Samples of a block, a power of two from 1 to 1024. Those of one block are spread evenly (Sobol), and errors come
+    /// from the spread of blocks; 1 is pure chance [default: so that there are 16 blocks, at most 64; 4 with --time]
+    #[arg(long, value_name = "N", help_heading = "Sampling")]
+    pub block: Option<u32>,
+    /// Make part I of N of the picture, for `airlight merge`: every Nth block of the samples (--spp counts the whole)
+    #[arg(long, value_name = "I/N", help_heading = "Sampling")]
+    pub shard: Option<Shard>,
     /// Seed of the random numbers, 0 to 2^64 - 1 [default: 0]
     #[arg(long, value_name = "S", help_heading = "Sampling")]
     pub seed: Option<u64>,
@@ -119,6 +125,45 @@ pub(super) struct RenderArgs {
 
     #[command(flatten)]
     pub aerosol: AerosolArgs,
+}
+
+/// What is written of a picture, and from which tables.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Files")]
+pub(super) struct PictureArgs {
+    /// EXR file to write; the PNG has the same name
+    #[arg(short, long, value_name = "FILE", default_value = "sky.exr")]
+    pub output: PathBuf,
+    /// Folder of the tables
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
+    /// Write the spectral channels too (S0.550,000nm in W m^-2 sr^-1 nm^-1)
+    #[arg(long)]
+    pub spectral: bool,
+    /// Exposure of the PNG, EV at ISO 100, -30 to 30: 1.2 * 2^EV cd/m^2 is white [default: the mean
+    /// logarithm of the luminance becomes 22 % of white]
+    #[arg(long, value_name = "EV")]
+    pub exposure: Option<f64>,
+    /// Say nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Flags of `airlight merge`.
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub(super) struct MergeArgs {
+    /// States of runs (--checkpoint, --shard), or their pictures with the states beside them (sky.exr: sky.state)
+    #[arg(value_name = "STATE", required = true)]
+    pub states: Vec<PathBuf>,
+    #[command(flatten)]
+    pub files: PictureArgs,
+    /// Write the state of the whole too, to be merged with more
+    #[arg(long, value_name = "FILE", help_heading = "Files")]
+    pub checkpoint: Option<PathBuf>,
+    /// Threads, 1 to 1024; the picture does not depend on it [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Files")]
+    pub threads: Option<u16>,
 }
 
 /// What kind of aerosol, and how much.
@@ -290,12 +335,27 @@ fn share(text: &str) -> Result<f64, String> {
     if (1e-5..=1.0).contains(&value) { Ok(value) } else { Err("0.001% to 100% is possible".into()) }
 }
 
+/// A time: `30s`, `5m` or `1.5h`.
+fn time(text: &str) -> Result<Duration, String> {
+    let units = [("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+    let found = units.into_iter().find_map(|(unit, seconds)| Some((text.strip_suffix(unit)?, seconds)));
+    let (number, unit) = found.ok_or("say 30s, 5m or 1.5h")?;
+    let seconds = number.trim().parse::<f64>().map_err(|_| "say 30s, 5m or 1.5h".to_string())? * unit;
+    if !(1.0..=3.6e6).contains(&seconds) {
+        return Err("1s to 1000h is possible".into());
+    }
+    Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())
+}
+
 /// A pixel: `412,97`.
 fn pixel(text: &str) -> Result<(u32, u32), String> {
     let parts = text.split_once(',').ok_or("say X,Y")?;
     let number = |part: &str| part.trim().parse().map_err(|_| "say X,Y in whole numbers".to_string());
     Ok((number(parts.0)?, number(parts.1)?))
 }
+
+/// Samples of a block where the time decides: few, so that it is kept.
+const TIMED_BLOCK: u32 = 4;
 
 impl RenderArgs {
     /// The scene of the flags laid over `base`, validated.
@@ -312,6 +372,9 @@ impl RenderArgs {
         // An amount on the command line replaces that of the scene, of whichever kind; so does no aerosol at all.
         let none = biome.is_none() && self.aerosol.biome.is_some();
         let amount = none || self.aerosol.aod.or(self.aerosol.visibility).or(self.aerosol.turbidity).is_some();
+        // So does an effort.
+        let effort = self.spp.is_some() || self.error.is_some() || self.time.is_some();
+        let timed = self.time.filter(|_| self.error.is_none()).map(|_| TIMED_BLOCK);
         let scene = Scene {
             altitude_km: self.altitude.unwrap_or(base.altitude_km),
             top_km: self.top.unwrap_or(base.top_km),
@@ -338,11 +401,12 @@ impl RenderArgs {
             view_elevation_deg: self.view_elevation.or(base.view_elevation_deg),
             width: self.width.or(base.width),
             height: self.height.or(base.height),
-            exposure_ev: self.exposure.or(base.exposure_ev),
+            exposure_ev: self.files.exposure.or(base.exposure_ev),
             method: self.method.map_or(base.method, Into::into),
             seed: self.seed.unwrap_or(base.seed),
-            spp: self.spp.or(base.spp),
-            error: self.error.or(base.error),
+            spp: self.spp.or(base.spp.filter(|_| !effort)),
+            block: self.block.or(base.block).or(timed),
+            error: self.error.or(base.error.filter(|_| !effort)),
         };
         scene.validate()?;
         Ok(scene)
@@ -400,5 +464,25 @@ mod tests {
         assert!(refusal("--error 200%").contains("0.001% to 100%"));
         assert!(refusal("--wavelengths 200,300").contains("300 to 1000 nm"));
         assert!(refusal("--threads 0").contains("1..=1024"));
+        assert!(refusal("--time 30").contains("30s, 5m"));
+        assert!(refusal("--time 0s").contains("1s to 1000h") && refusal("--time nans").contains("1s to 1000h"));
+        assert!(refusal("--shard 3/2").contains("1/N to N/N"));
+        assert!(refusal("--block 3").contains("power of two"));
+        assert!(refusal("--resume a.state scene.json").contains("cannot be used with"));
+    }
+
+    #[test]
+    fn an_effort_replaces_that_of_the_scene() {
+        let base = Scene { spp: Some(9), block: Some(2), ..Scene::default() };
+        let over = |flags: &str| {
+            let words = ["airlight"].into_iter().chain(flags.split_whitespace());
+            let scene = Program::try_parse_from(words).expect("flags").args.scene(base.clone()).expect("valid");
+            (scene.spp, scene.error, scene.block)
+        };
+        assert_eq!(over(""), (Some(9), None, Some(2)));
+        assert_eq!(over("--error 1%"), (None, Some(0.01), Some(2)));
+        assert_eq!(over("--time 1.5h --block 16"), (None, None, Some(16)));
+        assert_eq!(time("1.5h"), Ok(Duration::from_secs(5400)));
+        assert_eq!(scene("--time 1m").map(|scene| scene.block()), Ok(TIMED_BLOCK));
     }
 }

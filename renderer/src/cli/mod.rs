@@ -6,7 +6,9 @@
 
 mod args;
 mod bench;
+mod merge;
 mod output;
+mod picture;
 mod progress;
 mod radiance;
 mod render;
@@ -21,6 +23,8 @@ use std::process::ExitCode;
 enum Command {
     /// Render a picture: EXR to calculate with, PNG to look at
     Render(Box<args::RenderArgs>),
+    /// Put runs with different seeds or shards together as one picture
+    Merge(args::MergeArgs),
     /// Answer a file of reference cases: radiances with their standard errors
     Radiance(args::RadianceArgs),
     /// Measure what a direction and a picture cost on skies that other renderers were timed on
@@ -60,6 +64,7 @@ impl From<SceneError> for Failure {
 pub fn main() -> ExitCode {
     let outcome = match Command::parse() {
         Command::Render(args) => render::run(&args),
+        Command::Merge(args) => merge::run(&args),
         Command::Radiance(args) => radiance::run(&args),
         Command::Bench(args) => bench::run(&args),
     };

@@ -2,71 +2,174 @@
 
 use super::args::RenderArgs;
 use super::output::{eprintln, println};
-use super::progress::{Line, amount, duration, percent, size};
+use super::picture::{Files, Product, has_extension, read_state};
+use super::progress::{Line, amount, percent};
 use super::{Failure, Outcome};
 use crate::data::Data;
-use crate::film::{DiscLayer, Estimate, Picture, exr, png, tone};
-use crate::render::{Control, RenderError, Rendering, Sky, Summary, disc_layer, receipt, render, replay};
-use crate::scene::Scene;
-use std::path::{Path, PathBuf};
+use crate::film::Film;
+use crate::film::exr;
+use crate::render::{
+    Control, End, Extent, Head, Part, Progress, RenderError, Sky, State, Summary, disc_layer, empty, go_on, receipt,
+    replay,
+};
+use crate::scene::{Scene, SceneError};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// How often the state of a run is kept.
+const KEEP_EVERY: Duration = Duration::from_secs(60);
 
 pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
-    let base = args.scene.as_deref().map_or_else(|| Ok(Scene::default()), |path| read_scene(path, &args.tables))?;
-    let scene = args.scene(base)?;
-    let files = Files::new(&args.output)?;
-    let data = Data::load(&args.data).map_err(Failure::error)?;
-    let sky = Sky::new(&scene, &data).map_err(|error| match error {
-        RenderError::Scene(error) => error.into(),
-        RenderError::Air(error) => Failure::usage(error),
-        other => Failure::error(other),
-    })?;
+    let begin = Instant::now();
+    let (scene, kept) = match &args.resume {
+        Some(path) => {
+            let state = read_state(path, &args.tables)?;
+            (resumed(args, &state, path)?, Some(state))
+        }
+        None => {
+            let base = args.scene.as_deref().map(|path| read_scene(path, &args.tables)).transpose()?;
+            (args.scene(base.unwrap_or_default())?, None)
+        }
+    };
+    let deadline = args.time.and_then(|time| begin.checked_add(time));
+    let part = match kept.as_ref().map(|state| state.head.parts.as_slice()) {
+        Some([part]) => *part,
+        _ => Part { seed: scene.seed, shard: args.shard.unwrap_or_default() },
+    };
+    let extent = Extent { shard: part.shard, deadline };
+    let files = Files::new(&args.files.output, checkpoint(args).as_deref())?;
+    let data = Data::load(&args.files.data).map_err(Failure::error)?;
+    let sky = sky(&scene, &data)?;
     if let Some((x, y)) = args.pixel {
         return print_sample(&scene, &sky, (x, y), args.sample);
     }
+    let head = Head::new(&scene, &sky, vec![part]);
+    let film = start(kept, &scene, &sky, extent, args.resume.as_deref())?;
     let pool = super::pool(args.threads)?;
     let stop = stop_on_interrupt();
-    let line = Line::new(args.quiet);
-    let observe = |progress: crate::render::Progress| {
-        line.show(progress.fraction, |elapsed| {
-            let rate = amount(progress.samples as f64 / elapsed);
-            format!("error {}  {rate} samples/s", percent(progress.error))
-        });
+    let mut last = Instant::now();
+    let mut keep = |film: &Film| {
+        if let Some(path) = files.state().filter(|_| last.elapsed() >= KEEP_EVERY) {
+            // The last one counts; a picture is worth more than its checkpoint.
+            if let Err(error) = tables::file::replace(path, &head.encode(film)) {
+                eprintln!("airlight: {}: cannot be written, the run goes on: {error}", path.display());
+            }
+            last = Instant::now();
+        }
     };
-    let work = || -> Result<(Summary, DiscLayer, Rendering), RenderError> {
-        let rendering = render(&scene, &sky, Control { stop: &stop, observe: &observe })?;
-        let summary = Summary::new(&sky, scene.seed, &stop);
-        Ok((summary, disc_layer(&scene, &sky), rendering))
+    let work = || {
+        let (summary, disc) = (Summary::new(&sky, scene.seed, &stop), disc_layer(&scene, &sky));
+        let line = Line::new(args.files.quiet);
+        let observe = |progress: Progress| {
+            line.show(progress.fraction, |elapsed| {
+                let rate = amount(progress.samples as f64 / elapsed);
+                format!("error {}  {rate} samples/s", percent(progress.error))
+            });
+        };
+        let control = Control { stop: &stop, observe: &observe };
+        let rendering = go_on(film, &scene, &sky, extent, control, &mut keep);
+        line.clear();
+        rendering.map(|rendering| (summary, disc, rendering))
     };
-    let (summary, disc, rendering) = pool.install(work).map_err(|error| match error {
+    let result = pool.install(work);
+    let (summary, disc, rendering) = result.map_err(|error| match error {
         RenderError::NotFinite { x, y, sample } => {
-            let words: Vec<String> = std::env::args().collect();
-            Failure::error(format!("{error}; replay it with: {} --pixel {x},{y} --sample {sample}", words.join(" ")))
+            let command = replay_command(std::env::args(), (x, y), sample);
+            Failure::error(format!("{error}; replay it with: {command}"))
         }
         other => Failure::error(other),
     })?;
-    line.clear();
-
-    let picture = Picture { film: &rendering.film, disc: &disc, colour: sky.colour() };
-    let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(&picture));
-    let attributes = receipt::receipt(&scene, &sky, &rendering, &summary, exposure_ev);
-    let spectral = args.spectral.then_some(scene.wavelengths_nm.nm());
-    let exr = exr::encode(&picture, spectral, &attributes).map_err(Failure::error)?;
-    let png = png::encode(&picture, exposure_ev).map_err(Failure::error)?;
-    write(&files.exr, &exr)?;
-    write(&files.png, &png)?;
-    if !args.quiet {
-        describe(&scene, &sky, &summary, &rendering);
-        println!("time        {} on {} threads", duration(line.elapsed().as_secs_f64()), pool.current_num_threads());
-        println!("written     {} ({})", files.exr.display(), size(exr.len()));
-        println!("            {} ({}, EV {exposure_ev:.1})", files.png.display(), size(png.len()));
-    }
-    if rendering.stopped {
-        eprintln!("airlight: stopped by Ctrl-C; the picture holds the samples that were taken until then");
+    let end = rendering.end;
+    let scene = as_made(scene, rendering.film.most_blocks(), extent, end);
+    let head = Head { scene: scene.portable(), ..head };
+    Product { scene: &scene, sky: &sky, summary, disc, rendering, head }.deliver(&files, &args.files, begin, &pool)?;
+    if end == End::Stopped {
+        let hint = files.state().map_or(String::new(), |path| format!("; --resume {} goes on", path.display()));
+        eprintln!("airlight: stopped by Ctrl-C; the picture holds the samples that were taken until then{hint}");
         return Ok(Outcome::Interrupted);
     }
     Ok(Outcome::Done)
+}
+
+/// The scene turned into something that answers.
+pub(super) fn sky(scene: &Scene, data: &Data) -> Result<Sky, Failure> {
+    Sky::new(scene, data).map_err(|error| match error {
+        RenderError::Scene(error) => error.into(),
+        RenderError::Air(error) => Failure::usage(error),
+        other => Failure::error(other),
+    })
+}
+
+/// The scene of a run that goes on: that of its state, but for what decides when it ends and how it is looked at.
+fn resumed(args: &RenderArgs, state: &State, path: &Path) -> Result<Scene, Failure> {
+    let refuse = |text: String| Err(Failure::usage(format!("{}: {text}", path.display())));
+    let was = &state.head.scene;
+    let [part] = state.head.parts[..] else {
+        return refuse("a merged state has no run that could go on: render more seeds or shards and merge them".into());
+    };
+    if let Some(shard) = args.shard.filter(|shard| *shard != part.shard) {
+        return refuse(format!("it is shard {}, not {shard}", part.shard));
+    }
+    let mut scene = args.scene(was.clone())?;
+    // Another effort does not change the blocks, but they are said only where they are not the default.
+    if args.block.is_none() && scene.block() != was.block() {
+        scene.block = Some(was.block());
+    }
+    if scene.seed != was.seed {
+        return refuse(format!("its seed is {}, not {}", was.seed, scene.seed));
+    }
+    match was.difference(&scene) {
+        Some(difference) => refuse(format!("a run goes on with its own scene: {difference}")),
+        None => Ok(scene),
+    }
+}
+
+/// Where the state of the run is kept.
+fn checkpoint(args: &RenderArgs) -> Option<std::path::PathBuf> {
+    let beside = || args.shard.map(|_| args.files.output.with_extension("state"));
+    args.checkpoint.clone().or_else(|| args.resume.clone()).or_else(beside)
+}
+
+/// The film to begin with.
+fn start(kept: Option<State>, scene: &Scene, sky: &Sky, extent: Extent, path: Option<&Path>) -> Result<Film, Failure> {
+    let limit = extent.limit(scene);
+    if limit == 0 {
+        let blocks = "fewer blocks than shards: ask for more --spp, or a smaller --block";
+        return Err(SceneError::Refused(format!("shard {} would be empty, {blocks}", extent.shard)).into());
+    }
+    let (Some(State { head, film }), Some(path)) = (kept, path) else { return Ok(empty(scene, sky)) };
+    let at = |text: String| Failure::usage(format!("{}: {text}", path.display()));
+    if let Some(difference) = head.difference(&Head::new(scene, sky, head.parts.clone())) {
+        return Err(at(difference));
+    }
+    if film.most_blocks() > limit {
+        let samples = film.most_blocks() * scene.block();
+        return Err(at(format!(
+            "it has {samples} samples per pixel already: ask for more --spp, an --error or --time"
+        )));
+    }
+    Ok(film)
+}
+
+/// The scene that makes a picture again: where the time decided, it says how many samples that were.
+fn as_made(scene: Scene, blocks: u32, extent: Extent, end: End) -> Scene {
+    if end != End::Time {
+        return scene;
+    }
+    let block = scene.block();
+    Scene { spp: Some(extent.shard.whole(blocks) * block), block: Some(block), error: None, ..scene }
+}
+
+/// The command that prints one sample of a picture, from the words of the one that made it.
+fn replay_command(words: impl Iterator<Item = String>, (x, y): (u32, u32), sample: u32) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=%+@".contains(c);
+    let quoted = |word: String| {
+        if !word.is_empty() && word.chars().all(plain) { word } else { format!("'{}'", word.replace('\'', "'\\''")) }
+    };
+    let words: Vec<String> = words.map(quoted).collect();
+    format!("{} --pixel {x},{y} --sample {sample}", words.join(" "))
 }
 
 /// A scene from JSON, or from the EXR file of a picture. Its own tables are found and, of a picture, must be what they
@@ -85,76 +188,14 @@ fn read_scene(path: &Path, tables: &[String]) -> Result<Scene, Failure> {
     let mut scene = Scene::from_json(json).map_err(|error| Failure::usage(at(&error)))?;
     if tables.is_empty() {
         for table in &mut scene.tables {
-            *table = find_table(table, path, made_with)?;
+            *table = super::picture::find_table(table, path, made_with)?;
         }
     }
     Ok(scene)
 }
 
-/// Where the own table of a scene is: as it is written, from the current folder or from that of the scene, or by its
-/// name alone beside the scene. Of a picture (`made_with` are its tables) it must have the checksum that it had.
-fn find_table(table: &str, scene: &Path, made_with: Option<&str>) -> Result<String, Failure> {
-    let folder = scene.parent().unwrap_or(Path::new(""));
-    let name = Path::new(table).file_name().unwrap_or_default();
-    let places = [PathBuf::from(table), folder.join(table), folder.join(name)];
-    let at = |text: String| Failure::error(format!("{}: {text}", scene.display()));
-    let Some(found) = places.into_iter().find(|place| place.is_file()) else {
-        return Err(at(format!(
-            "its own table {table} is neither in the current folder nor beside it: name it with --table"
-        )));
-    };
-    if let Some(made_with) = made_with {
-        let bytes = std::fs::read(&found).map_err(|error| at(format!("{}: {error}", found.display())))?;
-        let (was, is) = (receipt::checksum_of(made_with, &name.to_string_lossy()), tables::file::checksum(&bytes));
-        if was != is {
-            let hex = |sum: Option<u32>| sum.map_or("none".into(), |sum| format!("{sum:08x}"));
-            return Err(at(format!(
-                "its own table {table} had the checksum {}, {} has {}: bring back the one it was made with, or name \
-                 this one with --table",
-                hex(was),
-                found.display(),
-                hex(is)
-            )));
-        }
-    }
-    found.into_os_string().into_string().map_err(|path| at(format!("{path:?} is not UTF-8")))
-}
-
-fn has_extension(path: &Path, wanted: &str) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
-}
-
-/// Where the picture goes.
-struct Files {
-    exr: PathBuf,
-    png: PathBuf,
-}
-
-impl Files {
-    /// Refuses a name that is not that of an EXR file in a folder that is there.
-    fn new(exr: &Path) -> Result<Self, Failure> {
-        if !has_extension(exr, "exr") {
-            return Err(Failure::usage(format!("{}: the name of the picture must end in .exr", exr.display())));
-        }
-        let folder = exr.parent().filter(|folder| !folder.as_os_str().is_empty());
-        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-            return Err(Failure::usage(format!("{}: there is no such folder to write to", folder.display())));
-        }
-        // Better now than after the work.
-        let files = Self { exr: exr.into(), png: exr.with_extension("png") };
-        for path in [&files.exr, &files.png] {
-            tables::file::check_writable(path).map_err(|error| super::unwritable(path, &error))?;
-        }
-        Ok(files)
-    }
-}
-
-fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    tables::file::replace(path, bytes).map_err(|error| super::unwritable(path, &error))
-}
-
 /// A flag that Ctrl-C sets; a second Ctrl-C ends the program at once.
-fn stop_on_interrupt() -> Arc<AtomicBool> {
+pub(super) fn stop_on_interrupt() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     let handler = move || {
@@ -167,60 +208,6 @@ fn stop_on_interrupt() -> Arc<AtomicBool> {
         eprintln!("airlight: Ctrl-C will end the program without a picture");
     }
     stop
-}
-
-/// What was rendered.
-fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering) {
-    let (width, height) = scene.size();
-    println!("sun         elevation {} degrees, azimuth {} degrees", scene.sun_elevation_deg, scene.sun_azimuth_deg);
-    let place = if sky.any_place() {
-        "own profile; month and latitude make no difference".into()
-    } else {
-        format!("month {}, latitude {}", scene.month, scene.latitude_deg)
-    };
-    println!(
-        "air         molecules and ozone {:.1} DU ({place}), top {} km, ground albedo {}",
-        sky.air().ozone_du(),
-        scene.top_km,
-        scene.albedo
-    );
-    for table in sky.identities().iter().filter(|table| table.own) {
-        println!("own table   {} {:08x}, {}: {}", table.file, table.checksum, table.kind, table.title);
-    }
-    if let Some(haze) = sky.air().haze() {
-        let humidities: Vec<String> =
-            haze.humidities_percent().iter().map(|(name, rh)| format!("{} {rh} %", name.replace('_', " "))).collect();
-        println!(
-            "aerosol     {}, optical depth {:.3} at 550 nm, {:.3} times the type's own, visibility {:.1} km",
-            haze.origin(),
-            haze.optical_depth(),
-            haze.factor(),
-            haze.visibility_km()
-        );
-        println!("            relative humidity: {}", humidities.join(", "));
-    }
-    let of = |Estimate { mean, error }: Estimate, unit: &str| {
-        let spread = if mean > 0.0 { format!(" (+- {})", percent(error / mean)) } else { String::new() };
-        format!("{} {unit}{spread}", amount(mean))
-    };
-    let place = if scene.in_space() { ", above the atmosphere: nothing overhead" } else { "" };
-    println!("observer    {} km{place}", scene.altitude_km);
-    println!("illuminance sun {} lux, sky {} on the horizontal", amount(summary.sun_lux), of(summary.sky_lux, "lux"));
-    println!("zenith      {}", of(summary.zenith_cd_m2, "cd/m2"));
-    let (film, errors) = (&rendering.film, rendering.errors);
-    let (least, most) = (film.least_samples(), film.most_samples());
-    let samples = if least == most { most.to_string() } else { format!("{least} to {most}") };
-    println!(
-        "picture     {width} x {height}, {} wavelengths, {samples} samples per pixel, seed {}",
-        sky.wavelengths(),
-        scene.seed
-    );
-    println!(
-        "error       {} (rms over mean radiance); median standard error {} of luminance, {} of spectral radiance",
-        percent(errors.relative),
-        percent(errors.median_luminance),
-        percent(errors.median_spectral)
-    );
 }
 
 /// One sample, number by number.
@@ -238,4 +225,18 @@ fn print_sample(scene: &Scene, sky: &Sky, (x, y): (u32, u32), sample: u32) -> Re
         println!("{nm},{:e},{factor:e}", factor * irradiance);
     }
     Ok(Outcome::Done)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_replay_of_a_sample_is_a_command_for_a_shell() {
+        let words = ["airlight", "render", "--table", "my haze's.table", "--error", "1%"].map(String::from);
+        assert_eq!(
+            replay_command(words.into_iter(), (3, 4), 5),
+            r"airlight render --table 'my haze'\''s.table' --error 1% --pixel 3,4 --sample 5"
+        );
+    }
 }

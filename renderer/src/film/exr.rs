@@ -8,7 +8,7 @@
 //! | `error.S0.550,000nm` ... | their standard errors |
 //!
 //! The solar disc is in the values and not in the errors. Outside the circle of a fisheye
-//! everything is zero; the error of a pixel with one sample is infinite. The same picture
+//! everything is zero; the error of a pixel with one block of samples is infinite. The same picture
 //! gives the same bytes: no clock is asked, and attributes are in alphabetical order.
 
 use super::{EncodeError, Picture};
@@ -50,7 +50,7 @@ pub fn encode(
     let pixels = width as usize * height as usize;
     let mut list: SmallVec<[AnyChannel<FlatSamples>; 4]> = SmallVec::new();
     // Where the picture shows nothing there is nothing to be uncertain of.
-    let known = |pixel: usize, error: f64| if film.samples(pixel) > 0 { error } else { 0.0 };
+    let known = |pixel: usize, error: f64| if film.blocks(pixel) > 0 { error } else { 0.0 };
     let mut add = |name: String, value: &dyn Fn(usize) -> f64| {
         let samples = (0..pixels).map(|pixel| value(pixel) as f32).collect();
         list.push(AnyChannel::new(text(&name), FlatSamples::F32(samples)));

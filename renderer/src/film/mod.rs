@@ -1,13 +1,19 @@
 //! What is known of each pixel so far, and the files it is written to.
 //!
-//! Every pixel keeps the mean and the spread of its samples for each wavelength and,
+//! The samples of a pixel come in blocks of one size, which are independent of each other; those of one block need not
+//! be. So a film is filled with the means of blocks, and errors come from the spread of these.
+//!
+//! Every pixel keeps the mean and the spread of its blocks for each wavelength and,
 //! apart from them, for R, G, B and Y: the wavelengths of one sample are
 //! correlated, so the error of a colour cannot be had from the errors of wavelengths.
 //! The solar disc is no sample; it is laid over the picture when it is written.
 
 pub mod exr;
 pub mod png;
+mod raw;
 pub mod tone;
+
+pub use raw::RawError;
 
 use crate::spectrum::{Colour, linear_srgb, luminance};
 use std::collections::BTreeMap;
@@ -17,7 +23,7 @@ const COLOURS: usize = 4;
 
 /// Running statistics of a picture: arrays over pixel (row by row from the top), then
 /// channel (N wavelengths, then R, G, B, Y).
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Film {
     width: u32,
     height: u32,
@@ -39,18 +45,18 @@ pub struct Row<'a> {
     squares: &'a mut [f64],
 }
 
-/// A mean and its standard error, sqrt(sum (x - mean)^2 / (n (n - 1))); the error of
-/// fewer than two samples is infinite.
+/// A mean and its standard error, sqrt(sum (x - mean)^2 / (n (n - 1))) over n independent numbers (in a film: means of
+/// blocks); the error of fewer than two is infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// Mean of the samples.
+    /// Mean of the numbers.
     pub mean: f64,
     /// Standard error of the mean.
     pub error: f64,
 }
 
 /// How well a picture is known, the solar disc left out. All are fractions, 0.01 is 1 %;
-/// infinite before every pixel has two samples.
+/// infinite before every pixel has two blocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Errors {
     /// sqrt(mean over pixels and wavelengths of the squared standard error of the spectral
@@ -111,28 +117,50 @@ impl Film {
         (0..).zip(parts).map(|(y, ((counts, means), squares))| Row { y, channels, counts, means, squares }).collect()
     }
 
-    /// Samples that pixel `pixel` (row by row) has; none where the picture shows nothing.
+    /// Blocks that pixel `pixel` (row by row) has; none where the picture shows nothing.
     #[must_use]
-    pub fn samples(&self, pixel: usize) -> u32 {
+    pub fn blocks(&self, pixel: usize) -> u32 {
         self.counts[pixel]
     }
 
-    /// Samples over all pixels.
+    /// The largest number of blocks of a pixel.
     #[must_use]
-    pub fn total_samples(&self) -> u64 {
-        self.counts.iter().map(|&n| u64::from(n)).sum()
-    }
-
-    /// The largest number of samples of a pixel.
-    #[must_use]
-    pub fn most_samples(&self) -> u32 {
+    pub fn most_blocks(&self) -> u32 {
         self.counts.iter().copied().max().unwrap_or(0)
     }
 
-    /// The smallest number of samples of a pixel that has any.
+    /// The smallest number of blocks of a pixel that has any.
     #[must_use]
-    pub fn least_samples(&self) -> u32 {
+    pub fn least_blocks(&self) -> u32 {
         self.counts.iter().copied().filter(|&n| n > 0).min().unwrap_or(0)
+    }
+
+    /// Adds the blocks of another film of the same size and wavelengths, all independent of those that are here.
+    ///
+    /// With d the difference of the means and n, m the numbers of blocks: mean += d m / (n + m);
+    /// squares += other squares + d^2 n m / (n + m) (Chan, Golub & LeVeque 1983).
+    ///
+    /// # Errors
+    /// [`OtherFilm`] if size or wavelengths differ; then nothing is added.
+    pub fn merge(&mut self, other: &Self) -> Result<(), OtherFilm> {
+        let same = self.size() == other.size() && self.irradiance_w_m2_nm == other.irradiance_w_m2_nm;
+        let sum = |(n, m): (&u32, &u32)| n.checked_add(*m);
+        let counts: Option<Vec<u32>> = self.counts.iter().zip(&other.counts).map(sum).collect();
+        let Some(counts) = counts.filter(|_| same) else { return Err(OtherFilm) };
+        let channels = self.channels();
+        for pixel in 0..self.counts.len() {
+            let (n, m) = (f64::from(self.counts[pixel]), f64::from(other.counts[pixel]));
+            if m == 0.0 {
+                continue;
+            }
+            for index in pixel * channels..(pixel + 1) * channels {
+                let difference = other.means[index] - self.means[index];
+                self.means[index] += difference * (m / (n + m));
+                self.squares[index] += other.squares[index] + difference * difference * (n * m / (n + m));
+            }
+        }
+        self.counts = counts;
+        Ok(())
     }
 
     fn estimate(&self, pixel: usize, channel: usize) -> Estimate {
@@ -200,7 +228,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 impl Row<'_> {
-    /// Adds one sample to pixel `x`: radiance factors in sr^-1 at the wavelengths and their linear sRGB.
+    /// Adds one block to pixel `x`: mean radiance factors in sr^-1 at the wavelengths and their linear sRGB.
     ///
     /// Welford's update: d = x - mean; mean += d / n; squares += d (x - mean).
     pub fn add(&mut self, x: u32, factors: &[f64], rgb: [f64; 3]) {
@@ -209,12 +237,18 @@ impl Row<'_> {
         let weight = 1.0 / f64::from(self.counts[x]);
         let own = x * self.channels..(x + 1) * self.channels;
         let [r, g, b] = rgb;
-        let sample = factors.iter().copied().chain([r, g, b, luminance(rgb)]);
-        for ((mean, squares), value) in self.means[own.clone()].iter_mut().zip(&mut self.squares[own]).zip(sample) {
+        let block = factors.iter().copied().chain([r, g, b, luminance(rgb)]);
+        for ((mean, squares), value) in self.means[own.clone()].iter_mut().zip(&mut self.squares[own]).zip(block) {
             let deviation = value - *mean;
             *mean += deviation * weight;
             *squares += deviation * (value - *mean);
         }
+    }
+
+    /// Blocks that pixel `x` has.
+    #[must_use]
+    pub fn blocks(&self, x: u32) -> u32 {
+        self.counts[x as usize]
     }
 
     /// Pixels in the row.
@@ -224,6 +258,11 @@ impl Row<'_> {
         self.counts.len() as u32
     }
 }
+
+/// Two films that are not of the same picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the films differ in size or wavelengths, or have too many blocks together")]
+pub struct OtherFilm;
 
 /// The sun's own image: by pixel, the radiance factors in sr^-1 that its disc adds.
 pub type DiscLayer = BTreeMap<usize, Vec<f64>>;
@@ -296,6 +335,26 @@ mod tests {
     }
 
     #[test]
+    fn films_merge_to_the_film_of_all_their_blocks() {
+        // Cancellation would show with the offset; the tolerance is some roundings of it.
+        let blocks: Vec<[f64; 2]> = (0..9).map(|i| [1e3 + f64::from(i * i % 7), f64::from(i)]).collect();
+        let whole = film_of(&blocks);
+        for cut in 0..=blocks.len() {
+            let mut film = film_of(&blocks[..cut]);
+            film.merge(&film_of(&blocks[cut..])).expect("the same size");
+            assert_eq!(film.blocks(1), 9);
+            for index in 0..2 {
+                let (got, expected) = (film.radiance(1, index), whole.radiance(1, index));
+                assert!(
+                    (got.mean / expected.mean - 1.0).abs() < 1e-12 && (got.error / expected.error - 1.0).abs() < 1e-12
+                );
+            }
+        }
+        assert_eq!(whole.clone().merge(&Film::new(2, 1, vec![2.0, 3.5])), Err(OtherFilm));
+        assert_eq!(whole.clone().merge(&Film::new(1, 2, vec![2.0, 3.0])), Err(OtherFilm));
+    }
+
+    #[test]
     fn the_error_of_luminance_heeds_that_channels_vary_together() {
         // Green falls as red rises, so that Y = 0.2126 R + 0.7152 G stays constant.
         let green = |red: f64| (1.0 - 0.212_639_005_9 * red) / 0.715_168_678_8;
@@ -310,7 +369,7 @@ mod tests {
         // Radiances 2 * 2 = 4 with error 2 * 1, and 3 with error 0; pixel 0 has no samples.
         let errors = film.errors();
         assert!((errors.relative - 2.0_f64.sqrt() / 3.5).abs() < 1e-12, "{errors:?}");
-        assert!((errors.median_spectral - 0.5).abs() < 1e-12 && film.most_samples() == 2);
+        assert!((errors.median_spectral - 0.5).abs() < 1e-12 && film.most_blocks() == 2);
         assert!(film_of(&[[1.0, 1.0]]).errors().relative.is_infinite());
     }
 }

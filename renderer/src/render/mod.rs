@@ -1,29 +1,39 @@
 //! Pictures: samples for every pixel, on every thread, until it is enough.
 //!
-//! Sample s of pixel p is a function of (seed, p, s) alone, and a pixel's samples are
-//! added in order, so a picture does not depend on the number of threads.
+//! Sample s of pixel p is a function of (seed, p, s) alone. A pixel's samples come in blocks of m ([`Scene::block`]),
+//! sample s as point s mod m of block s / m, and blocks are added in order: so a picture depends neither on the number
+//! of threads nor on where its work was interrupted.
 
 mod disc;
+#[cfg(test)]
+mod honesty;
+mod merge;
 pub mod receipt;
+mod sample;
+mod shard;
 mod sky;
+mod state;
 mod summary;
 #[cfg(test)]
 mod tests;
 
 pub use disc::disc_layer;
+pub use merge::{MergeError, Merged};
+pub use sample::replay;
+pub use shard::{Part, Shard};
 pub use sky::Sky;
+pub use state::{Head, State, StateError};
 pub use summary::Summary;
 
 use crate::atmosphere::AirError;
 use crate::camera::Camera;
 use crate::data::DataError;
 use crate::film::{Errors, Film, Row};
-use crate::sampling::Sampler;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{DEFAULT_SPP, MAX_SPP, Scene, SceneError};
 use crate::spectrum::linear_srgb;
-use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::time::{Duration, Instant};
 use tables::TableError;
 
 /// Why a picture cannot be made.
@@ -59,11 +69,11 @@ pub enum RenderError {
 /// How far a picture is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
-    /// Share of the work that is done, 0 to 1; a guess where an error is to be reached.
+    /// Share of this run's work that is done, 0 to 1; a guess where an error is to be reached.
     pub fraction: f64,
-    /// Samples taken so far, all pixels together.
+    /// Samples that this run has taken, all pixels together.
     pub samples: u64,
-    /// [`Errors::relative`] after the last pass; infinite before the second sample.
+    /// [`Errors::relative`] after the last pass; infinite before the second block.
     pub error: f64,
 }
 
@@ -76,6 +86,16 @@ pub struct Control<'a> {
     pub observe: &'a (dyn Fn(Progress) + Sync),
 }
 
+/// How much of a picture a run makes, beside what the scene says.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Extent {
+    /// Which of the picture's blocks.
+    pub shard: Shard,
+    /// When to end, of itself and whole: no pass is begun that would probably not be done by then, once every pixel has
+    /// two blocks. With it [`Scene::spp`] and [`Scene::error`] end the run sooner, if they are given.
+    pub deadline: Option<Instant>,
+}
+
 /// A picture's samples.
 #[derive(Debug)]
 pub struct Rendering {
@@ -83,74 +103,183 @@ pub struct Rendering {
     pub film: Film,
     /// How well they determine the picture.
     pub errors: Errors,
-    /// Whether it was stopped before its samples or its error were reached.
-    pub stopped: bool,
+    /// Why there are no more.
+    pub end: End,
 }
 
-/// No error is believed before so many samples of each pixel.
-const LEAST_FOR_ERROR: u32 = 8;
+/// What ended a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// Its samples are taken or its error is reached.
+    Done,
+    /// Its time was up. All pixels have as many samples.
+    Time,
+    /// It was stopped from outside.
+    Stopped,
+}
+
+/// No error is believed before so many blocks of each pixel: with fewer, a run could end because its error looks
+/// smaller than it is.
+pub const LEAST_FOR_ERROR: u32 = 16;
 
 /// A picture that is still black after so many samples of each pixel is taken for black,
 /// whatever error is asked for.
 const MOST_IN_THE_DARK: u32 = 1024;
 
 /// A pass over a small picture takes as many samples of each pixel as make this many in all.
-const PASS_SAMPLES: usize = 16_384;
+const PASS_SAMPLES: u64 = 16_384;
+
+/// Rows between two chances to keep the film.
+const BAND: u32 = 256;
 
 /// Renders a valid scene on the current thread pool: pass after pass over all pixels until the
-/// samples of [`Scene::spp_limit`] are taken, [`Scene::error`] is reached
-/// (after 8 samples at the earliest; a picture without any light ends after 1024) or `control` stops it.
+/// samples of [`Scene::spp`] are taken (rounded up to whole blocks), [`Scene::error`] is reached
+/// (after 16 blocks at the earliest; a picture without any light ends after 1024 samples) or `control` stops it.
 ///
 /// # Errors
 /// [`RenderError::NotFinite`] for the first pixel with such a sample.
 pub fn render(scene: &Scene, sky: &Sky, control: Control<'_>) -> Result<Rendering, RenderError> {
-    let (width, height) = scene.size();
-    let camera = scene.camera();
-    let mut film = Film::new(width, height, sky.irradiance_w_m2_nm().to_vec());
-    let mut errors = film.errors();
-    let limit = scene.spp_limit().unwrap_or(u32::MAX);
-    let pixels = width as usize * height as usize;
-    let per_pass = u32::try_from(PASS_SAMPLES / pixels).unwrap_or(1).max(1);
-    let cut = AtomicBool::new(false);
-    let mut taken = 0;
-    while taken < limit {
-        let samples = taken..(taken + per_pass).min(limit);
-        let pass = Pass { sky, camera: &camera, seed: scene.seed, samples: samples.clone() };
-        let work = Work { taken, limit, error: errors.relative, wanted: scene.error };
-        let rows_done = AtomicU32::new(0);
-        let failed = film
-            .rows_mut()
-            .into_par_iter()
-            .filter_map(|row| {
-                if control.stop.load(Ordering::Relaxed) {
-                    cut.store(true, Ordering::Relaxed);
-                    return None;
-                }
-                let failure = pass.fill(row).err();
-                let rows = rows_done.fetch_add(1, Ordering::Relaxed) + 1;
-                let more = f64::from(rows) / f64::from(height) * f64::from(samples.end - samples.start);
-                let samples = (pixels as f64 * (f64::from(taken) + more)) as u64;
-                (control.observe)(Progress { fraction: work.fraction(more), samples, error: errors.relative });
-                failure
-            })
-            .min_by_key(|(y, x, sample)| (*y, *x, *sample));
-        if let Some((y, x, sample)) = failed {
-            return Err(RenderError::NotFinite { x, y, sample });
-        }
-        taken = samples.end;
-        errors = film.errors();
-        let reached = taken >= LEAST_FOR_ERROR && scene.error.is_some_and(|wanted| errors.relative <= wanted);
-        let black = scene.error.is_some() && errors.relative.is_infinite() && taken >= MOST_IN_THE_DARK;
-        if reached || black || cut.load(Ordering::Relaxed) {
-            break;
-        }
-    }
-    Ok(Rendering { film, errors, stopped: cut.into_inner() })
+    go_on(empty(scene, sky), scene, sky, Extent::default(), control, &mut |_| {})
 }
 
-/// How much there is to do at the beginning of a pass.
+/// The film of a scene before its first sample.
+#[must_use]
+pub fn empty(scene: &Scene, sky: &Sky) -> Film {
+    let (width, height) = scene.size();
+    Film::new(width, height, sky.irradiance_w_m2_nm().to_vec())
+}
+
+/// As [`render`], for a part of the picture, from a film that this part has filled before; `keep` sees the film now and
+/// then. The same samples give the same bits, however often the work was interrupted.
+///
+/// # Errors
+/// As [`render`].
+pub fn go_on(
+    mut film: Film,
+    scene: &Scene,
+    sky: &Sky,
+    extent: Extent,
+    control: Control<'_>,
+    keep: &mut dyn FnMut(&Film),
+) -> Result<Rendering, RenderError> {
+    let (camera, (width, height), block) = (scene.camera(), scene.size(), scene.block());
+    let limit = extent.limit(scene);
+    let pass_blocks = (PASS_SAMPLES / (u64::from(width) * u64::from(height) * u64::from(block))).max(1) as u32;
+    let begin = Instant::now();
+    let first = least_blocks(&film, &camera);
+    let mut taken = first;
+    let mut errors = film.errors();
+    // After an interruption some rows are ahead of the others.
+    let mut even = film.most_blocks() == taken;
+    let end = 'passes: loop {
+        let reached = even && is_look(taken) && scene.error.is_some_and(|wanted| errors.relative <= wanted);
+        let black = scene.error.is_some()
+            && errors.relative.is_infinite()
+            && u64::from(taken) * u64::from(block) >= u64::from(MOST_IN_THE_DARK);
+        if taken >= limit || reached || black {
+            break End::Done;
+        }
+        let until = pass_end(taken, pass_blocks).min(limit);
+        if extent.deadline.is_some_and(|deadline| is_late(deadline, begin, taken - first, until - first) && taken >= 2)
+        {
+            break End::Time;
+        }
+        let pass = Pass { sky, camera: &camera, seed: scene.seed, block, shard: extent.shard, until };
+        let work = Work { first, taken, limit, error: errors.relative, wanted: scene.error };
+        let samples = u64::from(width) * u64::from(height) * u64::from(block);
+        let rows_done = AtomicU32::new(0);
+        for band in (0..height).step_by(BAND as usize) {
+            let rows = film.rows_mut().into_iter().skip(band as usize).take(BAND as usize);
+            let failed = rows
+                .collect::<Vec<_>>()
+                .into_par_iter()
+                .filter_map(|row| {
+                    if control.stop.load(Ordering::Relaxed) {
+                        return None;
+                    }
+                    let failure = pass.fill(row).err();
+                    let rows = rows_done.fetch_add(1, Ordering::Relaxed) + 1;
+                    let more = f64::from(rows) / f64::from(height) * f64::from(until - taken);
+                    (control.observe)(Progress {
+                        fraction: work.fraction(more).max(extent.share_of_time(begin)),
+                        samples: (samples as f64 * (f64::from(taken - first) + more)) as u64,
+                        error: errors.relative,
+                    });
+                    failure
+                })
+                .min_by_key(|(y, x, sample)| (*y, *x, *sample));
+            if let Some((y, x, sample)) = failed {
+                return Err(RenderError::NotFinite { x, y, sample });
+            }
+            if control.stop.load(Ordering::Relaxed) {
+                break;
+            }
+            keep(&film);
+        }
+        errors = film.errors();
+        if rows_done.into_inner() < height {
+            break 'passes End::Stopped;
+        }
+        taken = until;
+        even = film.most_blocks() == taken;
+    };
+    Ok(Rendering { film, errors, end })
+}
+
+impl Extent {
+    /// Blocks of each pixel that the run never exceeds; none if the shard has none.
+    #[must_use]
+    pub fn limit(&self, scene: &Scene) -> u32 {
+        let open = scene.error.is_some() || self.deadline.is_some();
+        let samples = scene.spp.unwrap_or(if open { MAX_SPP } else { DEFAULT_SPP });
+        self.shard.share(samples.div_ceil(scene.block()))
+    }
+
+    fn share_of_time(&self, begin: Instant) -> f64 {
+        let Some(deadline) = self.deadline else { return 0.0 };
+        let all = deadline.saturating_duration_since(begin).as_secs_f64();
+        if all > 0.0 { (begin.elapsed().as_secs_f64() / all).min(1.0) } else { 1.0 }
+    }
+}
+
+/// Whether the time is up or will be, at the pace since `begin` with `done` blocks, before there are `until`.
+fn is_late(deadline: Instant, begin: Instant, done: u32, until: u32) -> bool {
+    let elapsed = begin.elapsed();
+    let expected = if done > 0 { elapsed.as_secs_f64() * f64::from(until) / f64::from(done) } else { 0.0 };
+    // Beyond any deadline if it is no duration.
+    let expected = Duration::try_from_secs_f64(expected).unwrap_or(Duration::MAX);
+    begin.checked_add(expected.max(elapsed)).is_none_or(|end| end > deadline)
+}
+
+/// The smallest number of blocks of a pixel that shows something.
+fn least_blocks(film: &Film, camera: &Camera) -> u32 {
+    let (width, height) = film.size();
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let shown = pixels.zip(0..).filter(|((x, y), _)| sample::is_shown(camera, *x, *y));
+    shown.map(|(_, pixel)| film.blocks(pixel)).min().unwrap_or(u32::MAX)
+}
+
+/// Distance between two numbers of blocks at which the error is looked at: a 16th to a 32nd of them. Every look is a
+/// chance to end too early, and only few looks are all that a picture needs.
+fn look_step(blocks: u32) -> u32 {
+    if blocks < LEAST_FOR_ERROR { LEAST_FOR_ERROR } else { 1 << (blocks.ilog2() - 4) }
+}
+
+fn is_look(blocks: u32) -> bool {
+    blocks > 0 && blocks.is_multiple_of(look_step(blocks))
+}
+
+/// Where a pass ends that begins with `taken` blocks of each pixel: at the next look, or sooner.
+fn pass_end(taken: u32, pass_blocks: u32) -> u32 {
+    let step = look_step(taken);
+    (taken / step).saturating_add(1).saturating_mul(step).min(taken.saturating_add(pass_blocks))
+}
+
+/// How much there is to do at the beginning of a pass; numbers are blocks of each pixel.
 #[derive(Clone, Copy)]
 struct Work {
+    /// At the beginning of the run.
+    first: u32,
     taken: u32,
     limit: u32,
     error: f64,
@@ -158,85 +287,52 @@ struct Work {
 }
 
 impl Work {
-    /// Share of the work done with `more` samples of each pixel. The samples that an error needs go
+    /// Share of the work done with `more` blocks of each pixel. The blocks that an error needs go
     /// as its inverse square.
     fn fraction(self, more: f64) -> f64 {
-        let taken = f64::from(self.taken);
+        let [first, taken, limit] = [self.first, self.taken, self.limit].map(f64::from);
         let needed = match self.wanted {
-            Some(wanted) if self.error.is_finite() => (taken * (self.error / wanted).powi(2)).max(taken + 1.0),
-            Some(_) => f64::from(self.limit).min(1e3),
-            None => f64::INFINITY,
+            Some(wanted) if self.error.is_finite() => taken * (self.error / wanted).powi(2),
+            Some(_) => 1e3,
+            None => limit,
         };
-        ((taken + more) / needed.min(f64::from(self.limit))).min(1.0)
+        ((taken + more - first) / (needed.max(taken + 1.0).min(limit) - first)).min(1.0)
     }
 }
 
-/// Some samples of every pixel.
+/// Some blocks of every pixel.
 struct Pass<'a> {
     sky: &'a Sky,
     camera: &'a Camera,
     seed: u64,
-    samples: std::ops::Range<u32>,
+    block: u32,
+    shard: Shard,
+    /// Blocks that every pixel is to have.
+    until: u32,
 }
 
 impl Pass<'_> {
     /// Fills a row; the error is (row, column, sample) of an estimate that is not finite.
     fn fill(&self, mut row: Row<'_>) -> Result<(), (u32, u32, u32)> {
-        let width = row.width();
+        let (width, y) = (row.width(), row.y);
         let mut factors = vec![0.0; self.sky.wavelengths()];
-        for x in 0..width {
-            if self.camera.direction(f64::from(x) + 0.5, f64::from(row.y) + 0.5).is_none() {
-                continue;
-            }
-            for sample in self.samples.clone() {
-                one_sample(self.sky, self.camera, (width, x, row.y), (self.seed, sample), &mut factors);
-                let rgb = linear_srgb(self.sky.colour().xyz(&factors));
-                if !factors.iter().chain(&rgb).all(|v| v.is_finite()) {
-                    return Err((row.y, x, sample));
+        let mut sum = factors.clone();
+        for x in (0..width).filter(|&x| sample::is_shown(self.camera, x, y)) {
+            for count in row.blocks(x)..self.until {
+                let first = self.shard.block(count) * self.block;
+                sum.fill(0.0);
+                for sample in first..first + self.block {
+                    let place = sample::Index { seed: self.seed, block: self.block, sample };
+                    sample::take(self.sky, self.camera, (width, x, y), place, &mut factors);
+                    if !factors.iter().all(|v| v.is_finite()) {
+                        return Err((y, x, sample));
+                    }
+                    sum.iter_mut().zip(&factors).for_each(|(sum, factor)| *sum += factor);
                 }
-                row.add(x, &factors, rgb);
+                sum.iter_mut().for_each(|sum| *sum /= f64::from(self.block));
+                row.add(x, &sum, linear_srgb(self.sky.colour().xyz(&sum)));
             }
         }
         Ok(())
     }
-}
-
-/// Radiance factors (sr^-1) of one sample of pixel (`x`, `y`) of a valid scene, as the picture took it;
-/// `None` where the picture shows nothing.
-#[must_use]
-pub fn replay(scene: &Scene, sky: &Sky, x: u32, y: u32, sample: u32) -> Option<(DVec3, Vec<f64>)> {
-    let camera = scene.camera();
-    camera.direction(f64::from(x) + 0.5, f64::from(y) + 0.5)?;
-    let mut factors = vec![0.0; sky.wavelengths()];
-    let direction = one_sample(sky, &camera, (scene.size().0, x, y), (scene.seed, sample), &mut factors);
-    Some((direction, factors))
-}
-
-/// One sample of pixel (`x`, `y`) of a picture of some width, and the direction it looked in.
-fn one_sample(
-    sky: &Sky,
-    camera: &Camera,
-    (width, x, y): (u32, u32, u32),
-    (seed, sample): (u64, u32),
-    factors: &mut [f64],
-) -> DVec3 {
-    let pixel = u64::from(y) * u64::from(width) + u64::from(x);
-    let mut sampler = Sampler::new(seed, pixel, u64::from(sample));
-    let direction = within(camera, x, y, &mut sampler);
-    sky.radiance(direction, &sampler, factors);
-    direction
-}
-
-/// A direction uniformly distributed over the part of the pixel that lies in the picture. The
-/// pixel's middle does, so half of all draws or nearly so are good, and sixty-four bad ones in a
-/// row do not happen.
-fn within(camera: &Camera, x: u32, y: u32, sampler: &mut Sampler) -> DVec3 {
-    let (left, top) = (f64::from(x), f64::from(y));
-    (0..64)
-        .find_map(|_| {
-            let [u, v] = sampler.uniform_2d();
-            camera.direction(left + u, top + v)
-        })
-        .or_else(|| camera.direction(left + 0.5, top + 0.5))
-        .unwrap_or(DVec3::Z)
 }

@@ -1,6 +1,6 @@
 //! What a picture says about how it was made.
 
-use super::{Rendering, Sky, Summary};
+use super::{End, Part, Rendering, Sky, Summary};
 use crate::film::exr::Attribute;
 use crate::scene::Scene;
 
@@ -17,30 +17,47 @@ pub fn checksum_of(tables: &str, file: &str) -> Option<u32> {
     rests.filter_map(|rest| u32::from_str_radix(rest.get(..8)?, 16).ok()).next()
 }
 
+/// The program and its version.
+#[must_use]
+pub fn program() -> String {
+    format!("airlight {}", env!("CARGO_PKG_VERSION"))
+}
+
+/// The tables of a sky, as the attribute [`TABLES`] names them.
+#[must_use]
+pub fn tables(sky: &Sky) -> String {
+    let lines: Vec<String> =
+        sky.identities().iter().map(|t| format!("{} {:08x} {}", t.file, t.checksum, t.title)).collect();
+    lines.join("\n")
+}
+
 /// The attributes of a picture's EXR file, names beginning with `airlight.`: program and version, the scene as JSON
-/// (`airlight render` reads it), samples, errors, ozone, illuminances, exposure of the PNG, and
+/// (`airlight render` reads it), the seeds and shards whose samples it has, one a line, samples, errors, ozone, illuminances, exposure of the PNG, and
 /// each table with its checksum. No clock, machine or folder.
 #[must_use]
 pub fn receipt(
     scene: &Scene,
     sky: &Sky,
+    parts: &[Part],
     rendering: &Rendering,
     summary: &Summary,
     exposure_ev: f64,
 ) -> Vec<(String, Attribute)> {
-    let tables: Vec<String> =
-        sky.identities().iter().map(|t| format!("{} {:08x} {}", t.file, t.checksum, t.title)).collect();
     let film = &rendering.film;
     let text = |value: String| Attribute::Text(value);
-    let samples = |n: u32| Attribute::Integer(i32::try_from(n).unwrap_or(i32::MAX));
+    let block = scene.block();
+    let samples = |n: u32| Attribute::Integer(i32::try_from(n.saturating_mul(block)).unwrap_or(i32::MAX));
+    let parts: Vec<String> = parts.iter().map(Part::to_string).collect();
     let haze = sky.air().haze();
     let mut attributes = vec![
-        ("airlight.version", text(format!("airlight {}", env!("CARGO_PKG_VERSION")))),
+        ("airlight.version", text(program())),
         (SCENE, text(scene.to_portable_json())),
         ("airlight.seed", text(scene.seed.to_string())),
-        ("airlight.samples_per_pixel_least", samples(film.least_samples())),
-        ("airlight.samples_per_pixel_most", samples(film.most_samples())),
-        ("airlight.stopped_early", text(if rendering.stopped { "yes" } else { "no" }.into())),
+        ("airlight.samples_per_pixel_least", samples(film.least_blocks())),
+        ("airlight.samples_per_pixel_most", samples(film.most_blocks())),
+        ("airlight.samples_per_block", samples(1)),
+        ("airlight.parts", text(parts.join("\n"))),
+        ("airlight.stopped_early", text(if rendering.end == End::Stopped { "yes" } else { "no" }.into())),
         ("airlight.error", Attribute::Number(rendering.errors.relative)),
         ("airlight.error_median_luminance", Attribute::Number(rendering.errors.median_luminance)),
         ("airlight.error_median_spectral", Attribute::Number(rendering.errors.median_spectral)),
@@ -51,7 +68,7 @@ pub fn receipt(
         ("airlight.zenith_luminance_cd_m2", Attribute::Number(summary.zenith_cd_m2.mean)),
         ("airlight.zenith_luminance_cd_m2_error", Attribute::Number(summary.zenith_cd_m2.error)),
         ("airlight.exposure_ev", Attribute::Number(exposure_ev)),
-        (TABLES, text(tables.join("\n"))),
+        (TABLES, text(tables(sky))),
     ];
     if let Some(haze) = haze {
         attributes.push(("airlight.aerosol_optical_depth_550nm", Attribute::Number(haze.optical_depth())));

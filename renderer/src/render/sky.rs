@@ -12,8 +12,9 @@ use crate::transport::{self, Method, Problem};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::ops::Range;
-use tables::Kind;
+use std::path::Path;
 use tables::units::{EARTH_RADIUS_M, KM};
+use tables::{Curve, Kind, TableError};
 
 /// Everything that is computed once for a picture. All spectra are per unit of the
 /// sun's spectral irradiance above the atmosphere, in the order of the scene's wavelengths.
@@ -43,6 +44,7 @@ impl Sky {
             &with_own
         };
         check_own(scene, data)?;
+        check_wavelengths(scene, data)?;
         let wavelengths = &scene.wavelengths_nm;
         let albedo = scene.albedo_spectrum(data)?;
         let air = Air::new(
@@ -195,6 +197,25 @@ fn check_own(scene: &Scene, data: &Data) -> Result<(), SceneError> {
         )),
         None => Ok(()),
     }
+}
+
+/// The wavelength of visibilities and optical depths in nm, which every sky needs.
+const REFERENCE_NM: f64 = 550.0;
+
+/// Names the table that does not reach a wavelength of the scene. Between the first and the last they reach all.
+fn check_wavelengths(scene: &Scene, data: &Data) -> Result<(), TableError> {
+    let of = |kind: Kind| {
+        let identity = data.identities.iter().find(|identity| identity.kind == kind);
+        identity.map_or_else(|| kind.file_name(), |identity| identity.file.clone())
+    };
+    let nm = scene.wavelengths_nm.nm();
+    let ends = [nm.first(), nm.last(), Some(&REFERENCE_NM)];
+    let reach = |kind: Kind, curve: &Curve| {
+        ends.into_iter().flatten().try_for_each(|&nm| curve.at(nm).map(drop)).map_err(|e| e.at(Path::new(&of(kind))))
+    };
+    reach(Kind::Rayleigh, &data.rayleigh.cross_section_m2)?;
+    data.ozone_cross_section.coefficients.iter().try_for_each(|curve| reach(Kind::OzoneCrossSection, curve))?;
+    reach(Kind::Sun, &data.sun.irradiance_w_m2_nm)
 }
 
 /// What a packet is made from.

@@ -26,6 +26,17 @@ use tables::views::{AerosolSource, Biome};
 /// Samples per pixel where neither a number nor an error is asked for.
 pub const DEFAULT_SPP: u32 = 64;
 
+/// The most samples per pixel.
+pub const MAX_SPP: u32 = 1_000_000_000;
+
+/// The most samples of a block.
+pub const MAX_BLOCK: u32 = 1024;
+
+/// A run of samples of which the number is known has at least so many blocks, each of which is at most
+/// [`LARGE_BLOCK`] samples.
+const BLOCKS: u32 = 16;
+const LARGE_BLOCK: u32 = 64;
+
 /// One picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -93,8 +104,11 @@ pub struct Scene {
     pub method: Method,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// Samples per pixel, 1 to 10^6; with `error` the most of them.
+    /// Samples per pixel, 1 to 10^9, rounded up to whole blocks; with `error` the most of them.
     pub spp: Option<u32>,
+    /// Samples of a block, a power of two from 1 to 1024. Those of one block are spread evenly; errors come from the
+    /// spread of blocks. Default: see [`Scene::block`].
+    pub block: Option<u32>,
     /// Relative error at which to stop, 1e-5 to 1.
     pub error: Option<f64>,
 }
@@ -141,6 +155,7 @@ impl Default for Scene {
             method: Method::Paths,
             seed: 0,
             spp: None,
+            block: None,
             error: None,
         }
     }
@@ -167,8 +182,31 @@ impl Scene {
     /// the current folder the name of the file alone, for no picture tells of its maker's folders.
     #[must_use]
     pub fn to_portable_json(&self) -> String {
+        self.portable().to_json()
+    }
+
+    /// The scene without the folders of its maker, as [`Scene::to_portable_json`] has it.
+    #[must_use]
+    pub fn portable(&self) -> Self {
         let tables = self.tables.iter().map(|path| portable(path)).collect();
-        Self { tables, ..self.clone() }.to_json()
+        Self { tables, ..self.clone() }
+    }
+
+    /// In what this scene and another differ so that their samples are not of one picture, if they do. Seed, samples,
+    /// error and exposure make no difference, blocks do; of own tables only the files can tell.
+    #[must_use]
+    pub fn difference(&self, other: &Self) -> Option<String> {
+        let [ours, theirs] = [self, other].map(|scene| {
+            let (width, height) = scene.size();
+            let (width, height, block) = (Some(width), Some(height), Some(scene.block()));
+            let (spp, error, exposure_ev, tables) = (None, None, None, Vec::new());
+            let estimand = Self { width, height, block, seed: 0, spp, error, exposure_ev, tables, ..scene.clone() };
+            // As in `to_json`.
+            serde_json::to_value(estimand).unwrap_or_default()
+        });
+        let ours = ours.as_object()?;
+        let (key, value) = ours.iter().find(|(key, value)| theirs.get(key.as_str()) != Some(value))?;
+        Some(format!("{key} is {value} in one, {} in the other", theirs[key.as_str()]))
     }
 
     /// The first setting that says something of an aerosol, by its flag without dashes.
@@ -213,10 +251,19 @@ impl Scene {
         (self.width.unwrap_or(width), self.height.unwrap_or(256))
     }
 
-    /// The most samples per pixel; `None` if only the error stops the picture.
+    /// Samples of a block: as given, or the largest power of two, at most 64, of which the samples are 16 blocks. Where an
+    /// error E is to be reached 1/(3 E^2) samples are expected: the relative spread of one is about 60 %.
     #[must_use]
-    pub fn spp_limit(&self) -> Option<u32> {
-        self.spp.or(if self.error.is_some() { None } else { Some(DEFAULT_SPP) })
+    pub fn block(&self) -> u32 {
+        let samples = match self.error {
+            // At most 3.4e9, for the least error.
+            Some(error) => (1.0 / (3.0 * error * error)) as u32,
+            None => self.spp.unwrap_or(DEFAULT_SPP),
+        };
+        self.block.unwrap_or_else(|| {
+            let most = (samples / BLOCKS).clamp(1, LARGE_BLOCK);
+            1 << most.ilog2()
+        })
     }
 
     fn field_of_view_deg(&self) -> f64 {
@@ -350,6 +397,26 @@ mod tests {
         assert_eq!(scene, Scene { month: 3, albedo: Albedo::Grey(0.5), ..Scene::default() });
         let error = Scene::from_json(r#"{"sun_elevaton_deg": 3}"#).expect_err("unknown").to_string();
         assert!(error.contains("sun_elevaton_deg") && error.contains("line 1"), "{error}");
+    }
+
+    #[test]
+    fn samples_make_at_least_sixteen_blocks() {
+        let of = |spp| Scene { spp, ..Scene::default() }.block();
+        assert_eq!([None, Some(1), Some(31), Some(32), Some(100), Some(5000)].map(of), [4, 1, 1, 2, 4, 64]);
+        let of = |error| Scene { error: Some(error), spp: Some(9), ..Scene::default() }.block();
+        // 1/(3 E^2) = 33, 133, 833 and 3333 samples.
+        assert_eq!([0.5, 0.1, 0.05, 0.02, 0.01, 1e-5].map(of), [1, 2, 8, 32, 64, 64]);
+        assert_eq!(Scene { block: Some(128), ..Scene::default() }.block(), 128);
+    }
+
+    #[test]
+    fn scenes_of_one_picture_may_differ_in_seed_and_effort() {
+        let scene = Scene::default();
+        let other = Scene { seed: 7, error: Some(0.1), block: Some(4), width: Some(256), ..Scene::default() };
+        assert_eq!(scene.difference(&other), None);
+        let other = Scene { sun_elevation_deg: 29.0, ..Scene::default() };
+        assert_eq!(scene.difference(&other).as_deref(), Some("sun_elevation_deg is 30.0 in one, 29.0 in the other"));
+        assert!(scene.difference(&Scene { spp: Some(1), ..Scene::default() }).expect("blocks").contains("block is 4"));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What a scene may say.
 
-use super::{Albedo, CameraKind, Scene};
+use super::{Albedo, CameraKind, MAX_BLOCK, MAX_SPP, Scene};
 use crate::film::Film;
 use crate::spectrum::SpectrumError;
 use tables::{TableError, excerpt, nearest};
@@ -96,8 +96,13 @@ impl Scene {
         self.validate_aerosol()?;
         self.validate_view()?;
         optional("exposure", self.exposure_ev, -30.0, 30.0, " EV")?;
-        optional("spp", self.spp.map(f64::from), 1.0, 1e6, "")?;
-        optional("error", self.error, 1e-5, 1.0, "")
+        optional("spp", self.spp.map(f64::from), 1.0, f64::from(MAX_SPP), "")?;
+        optional("error", self.error, 1e-5, 1.0, "")?;
+        optional("block", self.block.map(f64::from), 1.0, f64::from(MAX_BLOCK), "")?;
+        match self.block.filter(|block| !block.is_power_of_two()) {
+            Some(block) => Err(SceneError::Refused(format!("block is {block}; a power of two is needed"))),
+            None => Ok(()),
+        }
     }
 
     fn validate_aerosol(&self) -> Result<(), SceneError> {
@@ -180,6 +185,8 @@ mod tests {
         assert_eq!(refusal(|s| s.month = 13), "month is 13; 1 to 12 is possible");
         assert_eq!(refusal(|s| s.albedo = Albedo::Grey(1.1)), "albedo is 1.1; 0 to 1 is possible");
         assert_eq!(refusal(|s| s.fov_deg = Some(361.0)), "fov is 361; 1 to 360 degrees for a fisheye is possible");
+        assert_eq!(refusal(|s| s.spp = Some(0)), "spp is 0; 1 to 1000000000 is possible");
+        assert_eq!(refusal(|s| s.block = Some(2048)), "block is 2048; 1 to 1024 is possible");
         assert_eq!(refusal(|s| s.width = Some(0)), "width is 0; 1 to 16384 pixels is possible");
         for nan in [f64::NAN, f64::INFINITY] {
             assert!(refusal(|s| s.latitude_deg = nan).contains("-90 to 90"));
@@ -194,6 +201,7 @@ mod tests {
         assert!(refusal(twice).contains("exclude each other"));
         let latlong = |s: &mut Scene| (s.camera, s.fov_deg) = (CameraKind::Latlong, Some(90.0));
         assert!(refusal(latlong).contains("whole sphere"));
+        assert!(refusal(|s| s.block = Some(48)).contains("power of two"));
         let large = |s: &mut Scene| (s.width, s.height) = (Some(16_384), Some(16_384));
         assert!(refusal(large).contains("GiB"));
     }

@@ -1,0 +1,210 @@
+//! What every command that makes a picture shares: the files that it reads and writes, and what it says of them.
+
+use super::Failure;
+use super::args::PictureArgs;
+use super::output::println;
+use super::progress::{amount, duration, percent, size};
+use crate::film::{DiscLayer, Estimate, Picture, exr, png, tone};
+use crate::render::{Head, Part, Rendering, Shard, Sky, State, Summary, receipt};
+use crate::scene::Scene;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Where the picture goes, and the state of its run.
+pub(super) struct Files {
+    exr: PathBuf,
+    png: PathBuf,
+    state: Option<PathBuf>,
+}
+
+impl Files {
+    /// Refuses a name that is not that of an EXR file in a folder that is there, a state under the name of a picture,
+    /// and whatever cannot be written: better now than after the work.
+    pub(super) fn new(exr: &Path, state: Option<&Path>) -> Result<Self, Failure> {
+        let named = |path: &Path, text: &str| Err(Failure::usage(format!("{}: {text}", path.display())));
+        if !has_extension(exr, "exr") {
+            return named(exr, "the name of the picture must end in .exr");
+        }
+        if let Some(state) = state.filter(|state| ["exr", "png"].iter().any(|end| has_extension(state, end))) {
+            return named(state, "the name of a picture, not of the state of a run");
+        }
+        let files = Self { exr: exr.into(), png: exr.with_extension("png"), state: state.map(Path::to_path_buf) };
+        for path in [Some(files.exr.as_path()), Some(&files.png), state].into_iter().flatten() {
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+            if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+                return named(folder, "there is no such folder to write to");
+            }
+            tables::file::check_writable(path).map_err(|error| super::unwritable(path, &error))?;
+        }
+        Ok(files)
+    }
+
+    /// Where the state of the run goes.
+    pub(super) fn state(&self) -> Option<&Path> {
+        self.state.as_deref()
+    }
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    tables::file::replace(path, bytes).map_err(|error| super::unwritable(path, &error))
+}
+
+/// A picture that is ready to be written.
+pub(super) struct Product<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) sky: &'a Sky,
+    pub(super) summary: Summary,
+    pub(super) disc: DiscLayer,
+    pub(super) rendering: Rendering,
+    pub(super) head: Head,
+}
+
+impl Product<'_> {
+    /// Writes the files, and says what they are.
+    pub(super) fn deliver(
+        &self,
+        files: &Files,
+        args: &PictureArgs,
+        begin: Instant,
+        pool: &rayon::ThreadPool,
+    ) -> Result<(), Failure> {
+        let Self { scene, sky, summary, disc, rendering, head } = self;
+        let picture = Picture { film: &rendering.film, disc, colour: sky.colour() };
+        let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(&picture));
+        let attributes = receipt::receipt(scene, sky, &head.parts, rendering, summary, exposure_ev);
+        let spectral = args.spectral.then_some(scene.wavelengths_nm.nm());
+        let exr = exr::encode(&picture, spectral, &attributes).map_err(Failure::error)?;
+        let png = png::encode(&picture, exposure_ev).map_err(Failure::error)?;
+        // First what cannot be made again at once.
+        if let Some(path) = files.state() {
+            write(path, &head.encode(&rendering.film))?;
+        }
+        write(&files.exr, &exr)?;
+        write(&files.png, &png)?;
+        if !args.quiet {
+            describe(scene, sky, summary, rendering, &head.parts);
+            println!(
+                "time        {} on {} threads",
+                duration(begin.elapsed().as_secs_f64()),
+                pool.current_num_threads()
+            );
+            println!("written     {} ({})", files.exr.display(), size(exr.len()));
+            println!("            {} ({}, EV {exposure_ev:.1})", files.png.display(), size(png.len()));
+            if let Some(path) = files.state() {
+                println!("            {} (the state of the run)", path.display());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The state of a run. Its own tables are found, and must be what they were, unless `tables` come in their place.
+pub(super) fn read_state(path: &Path, tables: &[String]) -> Result<State, Failure> {
+    let at = |error: &dyn std::fmt::Display| Failure::error(format!("{}: {error}", path.display()));
+    let bytes = std::fs::read(path).map_err(|error| at(&format!("cannot be read: {error}")))?;
+    let mut state = State::decode(&bytes).map_err(|error| at(&error))?;
+    if tables.is_empty() {
+        for table in &mut state.head.scene.tables {
+            *table = find_table(table, path, Some(&state.head.tables))?;
+        }
+    }
+    Ok(state)
+}
+
+/// Where the own table of a scene is: as it is written, from the current folder or from that of the scene, or by its
+/// name alone beside the scene. Of a picture (`made_with` are its tables) it must have the checksum that it had.
+pub(super) fn find_table(table: &str, scene: &Path, made_with: Option<&str>) -> Result<String, Failure> {
+    let folder = scene.parent().unwrap_or(Path::new(""));
+    let name = Path::new(table).file_name().unwrap_or_default();
+    let places = [PathBuf::from(table), folder.join(table), folder.join(name)];
+    let at = |text: String| Failure::error(format!("{}: {text}", scene.display()));
+    let Some(found) = places.into_iter().find(|place| place.is_file()) else {
+        return Err(at(format!(
+            "its own table {table} is neither in the current folder nor beside it: name it with --table"
+        )));
+    };
+    if let Some(made_with) = made_with {
+        let bytes = std::fs::read(&found).map_err(|error| at(format!("{}: {error}", found.display())))?;
+        let (was, is) = (receipt::checksum_of(made_with, &name.to_string_lossy()), tables::file::checksum(&bytes));
+        if was != is {
+            let hex = |sum: Option<u32>| sum.map_or("none".into(), |sum| format!("{sum:08x}"));
+            return Err(at(format!(
+                "its own table {table} had the checksum {}, {} has {}: bring back the one it was made with, or name \
+                 this one with --table",
+                hex(was),
+                found.display(),
+                hex(is)
+            )));
+        }
+    }
+    found.into_os_string().into_string().map_err(|path| at(format!("{path:?} is not UTF-8")))
+}
+
+pub(super) fn has_extension(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
+}
+
+/// What was rendered.
+fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, parts: &[Part]) {
+    let (width, height) = scene.size();
+    println!("sun         elevation {} degrees, azimuth {} degrees", scene.sun_elevation_deg, scene.sun_azimuth_deg);
+    let place = if sky.any_place() {
+        "own profile; month and latitude make no difference".into()
+    } else {
+        format!("month {}, latitude {}", scene.month, scene.latitude_deg)
+    };
+    println!(
+        "air         molecules and ozone {:.1} DU ({place}), top {} km, ground albedo {}",
+        sky.air().ozone_du(),
+        scene.top_km,
+        scene.albedo
+    );
+    for table in sky.identities().iter().filter(|table| table.own) {
+        println!("own table   {} {:08x}, {}: {}", table.file, table.checksum, table.kind, table.title);
+    }
+    if let Some(haze) = sky.air().haze() {
+        let humidities: Vec<String> =
+            haze.humidities_percent().iter().map(|(name, rh)| format!("{} {rh} %", name.replace('_', " "))).collect();
+        println!(
+            "aerosol     {}, optical depth {:.3} at 550 nm, {:.3} times the type's own, visibility {:.1} km",
+            haze.origin(),
+            haze.optical_depth(),
+            haze.factor(),
+            haze.visibility_km()
+        );
+        println!("            relative humidity: {}", humidities.join(", "));
+    }
+    let of = |Estimate { mean, error }: Estimate, unit: &str| {
+        let spread = if mean > 0.0 { format!(" (+- {})", percent(error / mean)) } else { String::new() };
+        format!("{} {unit}{spread}", amount(mean))
+    };
+    let place = if scene.in_space() { ", above the atmosphere: nothing overhead" } else { "" };
+    println!("observer    {} km{place}", scene.altitude_km);
+    println!("illuminance sun {} lux, sky {} on the horizontal", amount(summary.sun_lux), of(summary.sky_lux, "lux"));
+    println!("zenith      {}", of(summary.zenith_cd_m2, "cd/m2"));
+    let (film, errors) = (&rendering.film, rendering.errors);
+    let block = scene.block();
+    let [least, most] = [film.least_blocks(), film.most_blocks()].map(|blocks| u64::from(blocks) * u64::from(block));
+    let samples = if least == most { most.to_string() } else { format!("{least} to {most}") };
+    let blocks = if block > 1 { format!(" in blocks of {block}") } else { String::new() };
+    let (seed, parts) = match parts {
+        [part] if part.shard == Shard::default() => (format!(", seed {}", part.seed), &[][..]),
+        _ => (String::new(), parts),
+    };
+    println!(
+        "picture     {width} x {height}, {} wavelengths, {samples} samples per pixel{blocks}{seed}",
+        sky.wavelengths()
+    );
+    for part in parts {
+        println!("            {part}");
+    }
+    if let Some(spp) = scene.spp.filter(|spp| scene.error.is_none() && !spp.is_multiple_of(block)) {
+        println!("            ({spp} are not whole blocks, which are rounded up)");
+    }
+    println!(
+        "error       {} (rms over mean radiance); median standard error {} of luminance, {} of spectral radiance",
+        percent(errors.relative),
+        percent(errors.median_luminance),
+        percent(errors.median_spectral)
+    );
+}
