@@ -33,7 +33,7 @@ use crate::scene::{DEFAULT_SPP, MAX_SPP, Scene, SceneError};
 use crate::spectrum::linear_srgb;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use tables::TableError;
 
 /// Why a picture cannot be made.
@@ -122,6 +122,9 @@ pub enum End {
 /// smaller than it is.
 pub const LEAST_FOR_ERROR: u32 = 16;
 
+/// Blocks of each pixel that are made in however little time: the fewest with an error.
+const LEAST_IN_TIME: u32 = 2;
+
 /// A picture that is still black after so many samples of each pixel is taken for black,
 /// whatever error is asked for.
 const MOST_IN_THE_DARK: u32 = 1024;
@@ -179,10 +182,13 @@ pub fn go_on(
         if taken >= limit || reached || black {
             break End::Done;
         }
-        let until = pass_end(taken, pass_blocks).min(limit);
-        if extent.deadline.is_some_and(|deadline| is_late(deadline, begin, taken - first, until - first) && taken >= 2)
-        {
-            break End::Time;
+        let mut until = pass_end(taken, pass_blocks).min(limit);
+        if let Some(deadline) = extent.deadline {
+            let more = affordable(deadline, begin, taken - first);
+            if more == 0 && taken >= LEAST_IN_TIME {
+                break End::Time;
+            }
+            until = until.min(taken.saturating_add(more.max(1)));
         }
         let pass = Pass { sky, camera: &camera, seed: scene.seed, block, shard: extent.shard, until };
         let work = Work { first, taken, limit, error: errors.relative, wanted: scene.error };
@@ -242,13 +248,15 @@ impl Extent {
     }
 }
 
-/// Whether the time is up or will be, at the pace since `begin` with `done` blocks, before there are `until`.
-fn is_late(deadline: Instant, begin: Instant, done: u32, until: u32) -> bool {
-    let elapsed = begin.elapsed();
-    let expected = if done > 0 { elapsed.as_secs_f64() * f64::from(until) / f64::from(done) } else { 0.0 };
-    // Beyond any deadline if it is no duration.
-    let expected = Duration::try_from_secs_f64(expected).unwrap_or(Duration::MAX);
-    begin.checked_add(expected.max(elapsed)).is_none_or(|end| end > deadline)
+/// Blocks that can be made until the deadline at the pace since `begin`, with `done` blocks; before the first, two if
+/// there is any time.
+fn affordable(deadline: Instant, begin: Instant, done: u32) -> u32 {
+    let left = deadline.saturating_duration_since(Instant::now()).as_secs_f64();
+    if left > 0.0 && done == 0 {
+        return LEAST_IN_TIME;
+    }
+    // Saturates.
+    (left / (begin.elapsed().as_secs_f64() / f64::from(done))) as u32
 }
 
 /// The smallest number of blocks of a pixel that shows something.

@@ -5,6 +5,7 @@ use crate::data::Data;
 use crate::scene::CameraKind;
 use crate::spectrum::Wavelengths;
 use std::path::Path;
+use std::time::Duration;
 
 static NEVER: AtomicBool = AtomicBool::new(false);
 const RUN: Control<'static> = Control { stop: &NEVER, observe: &|_| {} };
