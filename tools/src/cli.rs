@@ -69,7 +69,7 @@ struct BuildArgs {
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
     /// Factor on the tolerances of averages over particle sizes, 0.001 to 1000. With 1, cross-sections and g to 1e-6 and phase
-    /// functions to 1e-5 where k >= 0.005, 1e-4 and 1e-2 elsewhere; a table says where 12800 and 6400 radii do not reach that
+    /// functions to 1e-5 where k >= 0.005, 1e-4 and 1e-2 elsewhere; a table says where 12800 and 51200 intervals do not reach that
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = tolerance)]
     tolerance: f64,
     /// Say nothing but errors

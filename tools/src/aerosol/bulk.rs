@@ -41,7 +41,7 @@ impl Rule {
     pub const TABLES: Self = Self {
         first: 50,
         absorbing: Tolerance { cross_sections: 1e-6, phase: 1e-5, most: 12_800 },
-        clear: Tolerance { cross_sections: 1e-4, phase: 1e-2, most: 6400 },
+        clear: Tolerance { cross_sections: 1e-4, phase: 1e-2, most: 51_200 },
     };
 
     /// The same rule with its tolerances times `factor`, of [`Rule::FACTORS`].

@@ -44,6 +44,8 @@ impl Library {
             (0..distinct.len()).flat_map(|p| (0..wavelengths_nm.len()).map(move |w| (p, w))).collect();
         let done: Vec<Result<Bulk, AerosolError>> = jobs
             .par_iter()
+            // Jobs differ a thousandfold: each is up to whoever is free.
+            .with_max_len(1)
             .map_init(Spheres::new, |solver, &(p, w)| {
                 let (particles, wavelength_nm) = (&distinct[p], wavelengths_nm[w]);
                 let m = index(substances, &particles.material, particles.humidity_percent, wavelength_nm)?;
