@@ -236,33 +236,37 @@ fn size_quadrature(part: &Part) -> Result<Figure, PolarsError> {
 fn aerosol_tables(part: &Part) -> Result<Figure, PolarsError> {
     const COLOURS: [Colour; 3] = [GREY, BLUE, GREEN];
     let frame = &part.frame;
-    let error = |label: &str| Axis::logarithmic(label, 1e-7, 1.0, 1);
+    let error = |least: f64| Axis::logarithmic("error of radiance", least, 1e-1, 1);
     if part.name == aerosol_tables::PARTS[2] {
         let mut curves = Vec::new();
         for ((column, words), colour) in aerosol_tables::BY_ANGLE.into_iter().zip(COLOURS) {
             curves.push(Curve::new(words, colour, points(frame, ("scattering_angle_deg", 1.0), (column, 1.0))?));
         }
         let angle = Axis::linear("scattering angle / °", 0.0, 180.0, 30.0);
-        let panel = Panel::new(angle, error("error of radiance"), curves).key(Key::TopRight);
+        let panel = Panel::new(angle, error(1e-5), curves).key(Key::TopRight);
         let title = "What angles cost: largest error of radiance over all biomes, 312.5 and 512.5 nm";
         return Ok(Figure::new(title, vec![vec![panel]]));
     }
+    // A line for each candidate, the first at the top.
+    let (names, sizes) = (frame.texts("candidate")?, frame.column("megabytes")?);
+    let height = |i: usize| (names.len() - i) as f64 - 0.5;
     let curve = |name: &str, column: &str, colour| -> Result<Curve, PolarsError> {
-        Ok(Curve::new(name, colour, points(frame, ("megabytes", 1.0), (column, 1.0))?).stroke(Stroke::Marks))
+        let points = frame.column(column)?.into_iter().enumerate().map(|(i, error)| (error, height(i))).collect();
+        Ok(Curve::new(name, colour, points).stroke(Stroke::Marks))
     };
     let curves = vec![
         curve("largest", "largest_error", VERMILION)?,
+        curve("largest but for one biome", "largest_error_but_one_biome", ORANGE)?,
         curve("root of the mean square", "rms_error", BLUE)?,
         curve("largest of the matrix", "matrix_error", GREEN)?,
     ];
-    let size = Axis::logarithmic("phase functions and matrices / MB", 1.0, 100.0, 1);
-    let words = if part.name == aerosol_tables::PARTS[0] {
-        "steps and rules of wavelengths"
-    } else {
-        "numbers and rules of angles"
-    };
-    let title = format!("Aerosol tables: error of radiance between nodes against size, {words}");
-    Ok(Figure::new(title, vec![vec![Panel::new(size, error("error of radiance"), curves)]]))
+    let named = names.iter().zip(&sizes).enumerate();
+    let named = named.map(|(i, (name, size))| (height(i), format!("{name}, {size:.1} MB"))).collect();
+    let candidates = Axis::linear("", 0.0, names.len() as f64, 1.0).named(named);
+    let (of, least) =
+        if part.name == aerosol_tables::PARTS[0] { ("wavelengths", 1e-5) } else { ("angles and digits", 1e-8) };
+    let panel = Panel::new(error(least), candidates, curves).key(Key::Beside);
+    Ok(Figure::new(format!("Aerosol tables: error of radiance between nodes, by {of}"), vec![vec![panel]]))
 }
 
 #[cfg(test)]
@@ -290,8 +294,11 @@ mod tests {
         let others = aerosol_tables::COLUMNS.map(String::from);
         let all: Vec<String> = ["scattering_angle_deg".to_owned()].into_iter().chain(by_angle).chain(others).collect();
         for name in aerosol_tables::PARTS {
-            let figure = figure(Name::AerosolTables, &Part { name, frame: frame(all.clone()) }).expect("drawn");
-            assert_eq!(figure.rows[0][0].curves.len(), 3, "{name}");
+            let labels = ["a", "b", "c"].map(String::from).to_vec();
+            let frame = frame(all.clone()).labelled([("candidate", labels)]).expect("equal lengths");
+            let figure = figure(Name::AerosolTables, &Part { name, frame }).expect("drawn");
+            let expected = if name == aerosol_tables::PARTS[2] { 3 } else { 4 };
+            assert_eq!(figure.rows[0][0].curves.len(), expected, "{name}");
         }
         let part = Part { name: "", frame: frame(["radii".to_owned()]) };
         assert!(figure(Name::SizeQuadrature, &part).is_err(), "numbers of another study");
