@@ -132,11 +132,14 @@ impl Cost {
     }
 }
 
-/// Independent sequences whose spread is the error of one.
-const REPLICATES: u64 = 256;
+/// Independent sequences whose spread is the error of one, of fewer points than [`LONG`] and of more.
+const REPLICATES: (u64, u64) = (256, 32);
 
-/// Measures one direction of a case: sequences of 1, 2, 4 ... points, 256 of each length, until their spread is
-/// below 1 % (between two lengths by a power law) and `seconds` have passed.
+/// Points of a sequence that is long.
+const LONG: u64 = 1024;
+
+/// Measures one direction of a case: sequences of 1, 2, 4 ... points, 256 of each length, or 32 where they are long, until
+/// their spread is below 1 % (between two lengths by a power law) and `seconds` have passed.
 #[must_use]
 pub fn measure(
     case: &Case,
@@ -172,7 +175,8 @@ pub fn measure(
     let mut points = 1_u64;
     while points <= POINTS {
         let (mut mean, mut squares) = (0.0, 0.0);
-        for replicate in 0..REPLICATES {
+        let replicates = if points < LONG { REPLICATES.0 } else { REPLICATES.1 };
+        for replicate in 0..replicates {
             let batch = Instant::now();
             let sum: f64 = (0..points)
                 .map(|point| {
@@ -189,8 +193,8 @@ pub fn measure(
             mean += off / (replicate + 1) as f64;
             squares += off * (value - mean);
         }
-        let spread = (squares / (REPLICATES - 1) as f64).sqrt();
-        cost.radiance = (mean, spread / (REPLICATES as f64).sqrt());
+        let spread = (squares / (replicates - 1) as f64).sqrt();
+        cost.radiance = (mean, spread / (replicates as f64).sqrt());
         let relative = spread / mean;
         if points == 1 {
             cost.deviation = relative;

@@ -189,8 +189,7 @@ fn fly<const L: usize>(
     if collision[hero] <= 0.0 {
         return None;
     }
-    let s = chord.at_depth(hero, -(-u * collision[hero]).ln_1p());
-    let point = chord.point(s);
+    let (s, point) = chord.at_depth(hero, -(-u * collision[hero]).ln_1p());
     let through = point.depth.map(|depth| (-depth).exp());
     let density: [f64; L] = std::array::from_fn(|j| {
         if collision[j] > 0.0 { probability[j] * point.slope[j].max(0.0) * through[j] / collision[j] } else { 0.0 }
@@ -248,7 +247,8 @@ fn line<const L: usize>(
         let Some(guide) = Guide::new(&sight, &stretches[..count]) else { return };
         for u in quantiles {
             let (s, density) = guide.sample(u);
-            if let Some(Seen { arrives, scattered, through, .. }) = sight.at(s) {
+            if let Some(Seen { scattered, through }) = sight.at(s) {
+                let arrives = sight.arrives(s);
                 carried.score(sum, |j| share * arrives[j] * scattered[j] * light[j] * through[j] / density);
             }
         }
@@ -267,8 +267,12 @@ fn line<const L: usize>(
     for u in quantiles {
         // exp(-tau) = exp(-tau_a) - u M, as a depth past the beginning.
         let past = -(-u * mass[hero] * start[hero].exp()).max(-1.0).ln_1p();
-        let s = chord.at_depth(hero, start[hero] + past).clamp(from, to);
-        let Some(Seen { arrives, slope, scattered, through }) = sight.at(s) else { continue };
+        let (s, point) = chord.at_depth(hero, start[hero] + past);
+        // Rounding can pass the end of what is lit.
+        let (s, point) = if s >= from && s <= to { (s, point) } else { (s.clamp(from, to), chord.point(s.clamp(from, to))) };
+        let Some(Seen { scattered, through }) = sight.at(s) else { continue };
+        let arrives = point.depth.map(|depth| (-depth).exp());
+        let slope = point.slope.map(|slope| slope.max(0.0));
         let density: [f64; L] =
             std::array::from_fn(|j| if mass[j] > 0.0 { slope[j] * arrives[j] / mass[j] } else { 0.0 });
         if density[hero] <= 0.0 {
@@ -292,10 +296,6 @@ struct Sight<'a, const L: usize> {
 
 /// What a point of a chord sends along it.
 struct Seen<const L: usize> {
-    /// Transmittance between the point and the chord's beginning.
-    arrives: [f64; L],
-    /// Extinction coefficient by the table.
-    slope: [f64; L],
     /// Scattering coefficient times phase function.
     scattered: [f64; L],
     /// Transmittance to the sun.
@@ -309,14 +309,13 @@ impl<const L: usize> Sight<'_, L> {
         let mut there = self.place.advance(self.problem.shape, self.direction, self.chord.travelled(s));
         there.altitude_m = there.altitude_m.clamp(0.0, self.problem.medium.top_m());
         let through = self.problem.columns.transmittance(there, self.sun)?;
-        let point = self.chord.point(s);
-        let scattered = self.towards.at(&self.problem.medium.local_at(there.altitude_m));
-        Some(Seen {
-            arrives: point.depth.map(|depth| (-depth).exp()),
-            slope: point.slope.map(|slope| slope.max(0.0)),
-            scattered,
-            through,
-        })
+        Some(Seen { scattered: self.towards.at(&self.problem.medium.local_at(there.altitude_m)), through })
+    }
+
+    /// Transmittance between a point and the chord's beginning.
+    #[inline]
+    fn arrives(&self, s: f64) -> [f64; L] {
+        self.chord.point(s).depth.map(|depth| (-depth).exp())
     }
 }
 
@@ -348,7 +347,8 @@ impl Guide {
                 let s = spread(sight.chord, from, to, i as f64 / (each - 1) as f64);
                 let at = guide.count;
                 guide.places[at] = s;
-                if let Some(Seen { arrives, scattered, through, .. }) = sight.at(s) {
+                if let Some(Seen { scattered, through }) = sight.at(s) {
+                    let arrives = sight.arrives(s);
                     light[at] = std::array::from_fn(|j| arrives[j] * scattered[j] * through[j]);
                 }
                 guide.count += 1;

@@ -1,4 +1,4 @@
-//! Making the tables: exact columns by quadrature, nodes where interpolation needs them.
+//! Making the tables: exact optical depths by quadrature, nodes where interpolation needs them.
 
 use super::{Columns, Rows};
 use crate::atmosphere::Medium;
@@ -43,47 +43,30 @@ struct Step {
     interval: usize,
 }
 
-/// Everything that gives exact columns.
+/// Everything that gives exact optical depths.
 struct Exact<'a, const L: usize> {
     medium: &'a Medium<L>,
     shape: Shape,
     steps: Vec<Step>,
-    lanes: usize,
-    /// Whether a lane is a wavelength, not a species.
-    by_wavelength: bool,
-    extinction: Vec<[f64; L]>,
     tolerance: Tolerance,
 }
 
-/// Columns [node][lane] from the start of a line, and the distance of each node from the perigee; nothing below the start.
-struct Row {
+/// Optical depths at each node from the start of a line, and the distance of each node from the perigee; nothing below the start.
+struct Row<const L: usize> {
     distances: Vec<f64>,
-    columns: Vec<f64>,
-    start: Vec<f64>,
+    depths: Vec<[f64; L]>,
+    start: [f64; L],
 }
 
 impl<const L: usize> Columns<L> {
     /// The columns of `medium`.
     #[must_use]
     pub fn new(medium: &Medium<L>, shape: Shape, tolerance: Tolerance) -> Self {
-        let species = medium.components().len();
-        let by_wavelength = L < species;
-        let lanes = if by_wavelength { L } else { species };
-        let extinction = (0..lanes)
-            .map(|lane| {
-                if by_wavelength {
-                    std::array::from_fn(|j| f64::from(u8::from(j == lane)))
-                } else {
-                    let component = &medium.components()[lane];
-                    std::array::from_fn(|j| component.scattering[j] + component.absorption[j])
-                }
-            })
-            .collect();
-        let mut exact = Exact { medium, shape, steps: Vec::new(), lanes, by_wavelength, extinction, tolerance };
+        let mut exact = Exact { medium, shape, steps: Vec::new(), tolerance };
         exact.steps = steps(medium);
         let nodes = exact.altitudes();
         exact.cut(&nodes);
-        let densities = nodes.windows(2).flat_map(|ends| exact.ends(ends[0], ends[1])).collect();
+        let extinction = nodes.windows(2).map(|ends| exact.ends(ends[0], ends[1])).collect();
         let (limb, ground) = match shape {
             // One row serves all directions; a second copy closes the cell.
             Shape::Flat => {
@@ -92,8 +75,7 @@ impl<const L: usize> Columns<L> {
             }
             Shape::Sphere { radius_m } => (exact.limb(&nodes), exact.ground(radius_m, &nodes)),
         };
-        let Exact { extinction, .. } = exact;
-        Self { shape, lanes, extinction, altitudes: Lookup::new(nodes), densities, limb, ground }
+        Self { shape, altitudes: Lookup::new(nodes), extinction, limb, ground }
     }
 }
 
@@ -112,36 +94,18 @@ fn steps<const L: usize>(medium: &Medium<L>) -> Vec<Step> {
 }
 
 impl<const L: usize> Exact<'_, L> {
-    /// Densities of all lanes at an altitude of an interval.
-    fn density(&self, interval: usize, altitude: f64) -> Vec<f64> {
+    /// Extinction coefficients at an altitude of an interval.
+    fn extinction(&self, interval: usize, altitude: f64) -> [f64; L] {
         let nodes = self.medium.nodes();
         let (a, b) = (nodes[interval], nodes[interval + 1]);
-        let fraction = ((altitude - a) / (b - a)).clamp(0.0, 1.0);
-        if self.by_wavelength {
-            self.medium.extinction_in(interval, fraction).to_vec()
-        } else {
-            self.medium.densities(interval, fraction)[..self.lanes].to_vec()
-        }
+        self.medium.extinction_in(interval, ((altitude - a) / (b - a)).clamp(0.0, 1.0))
     }
 
-    /// Optical depth at each wavelength of the columns of all lanes.
-    fn depth(&self, columns: &[f64]) -> [f64; L] {
-        let mut depth = [0.0; L];
-        for (column, sigma) in columns.iter().zip(&self.extinction) {
-            for (depth, sigma) in depth.iter_mut().zip(sigma) {
-                *depth += column * sigma;
-            }
-        }
-        depth
-    }
-
-    /// Densities at the bottom and the top of a cell of the table, from inside.
-    fn ends(&self, bottom: f64, top: f64) -> Vec<f64> {
+    /// Extinction coefficients at the bottom and the top of a cell of the table, from inside.
+    fn ends(&self, bottom: f64, top: f64) -> [[f64; L]; 2] {
         let first = self.steps.partition_point(|s| s.top <= bottom);
         let last = self.steps.partition_point(|s| s.bottom < top) - 1;
-        let mut both = self.density(self.steps[first].interval, bottom);
-        both.extend(self.density(self.steps[last].interval, top));
-        both
+        [self.extinction(self.steps[first].interval, bottom), self.extinction(self.steps[last].interval, top)]
     }
 
     /// Makes no step reach over a node.
@@ -181,34 +145,34 @@ impl<const L: usize> Exact<'_, L> {
         }
     }
 
-    /// Columns of one step above the altitude `from`, added to `columns`.
-    fn add_step(&self, p: f64, from: f64, step: Step, columns: &mut [f64]) {
+    /// Optical depths of one step above the altitude `from`, added to `depths`.
+    fn add_step(&self, p: f64, from: f64, step: Step, depths: &mut [f64; L]) {
         let (a, b) = (self.distance(p, step.bottom.max(from)), self.distance(p, step.top));
         let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
         for (x, weight) in GAUSS_4 {
-            let density = self.density(step.interval, self.altitude(p, middle + half * x));
-            for (column, density) in columns.iter_mut().zip(density) {
-                *column += weight * half * density;
+            let extinction = self.extinction(step.interval, self.altitude(p, middle + half * x));
+            for (depth, extinction) in depths.iter_mut().zip(extinction) {
+                *depth += weight * half * extinction;
             }
         }
     }
 
     /// The row of the line with perigee `p`: from the perigee, or from the ground if that is below it.
-    fn row(&self, p: f64, nodes: &[f64]) -> Row {
+    fn row(&self, p: f64, nodes: &[f64]) -> Row<L> {
         let from = p.max(0.0);
-        let mut columns = vec![0.0; nodes.len() * self.lanes];
-        let mut sum = vec![0.0; self.lanes];
+        let mut depths = vec![[0.0; L]; nodes.len()];
+        let mut sum = [0.0; L];
         let first = self.steps.partition_point(|s| s.top <= from).min(self.steps.len() - 1);
         let mut node = nodes.partition_point(|&z| z <= from);
         for &step in &self.steps[first..] {
             self.add_step(p, from, step, &mut sum);
             if node < nodes.len() && step.top >= nodes[node] {
-                columns[node * self.lanes..(node + 1) * self.lanes].copy_from_slice(&sum);
+                depths[node] = sum;
                 node += 1;
             }
         }
         let distances = nodes.iter().map(|&z| self.distance(p, z.max(p))).collect();
-        Row { distances, columns, start: self.density(self.steps[first].interval, from) }
+        Row { distances, depths, start: self.extinction(self.steps[first].interval, from) }
     }
 
     /// Nodes of altitude: jumps, and bisection until the means between them hold.
@@ -225,14 +189,14 @@ impl<const L: usize> Exact<'_, L> {
         kept
     }
 
-    /// Whether a density jumps at node `i` of the medium.
+    /// Whether the extinction jumps at node `i` of the medium.
     fn jumps(&self, i: usize) -> bool {
         let z = self.medium.nodes()[i];
-        let (below, above) = (self.depth(&self.density(i - 1, z)), self.depth(&self.density(i, z)));
+        let (below, above) = (self.extinction(i - 1, z), self.extinction(i, z));
         below.iter().zip(&above).any(|(a, b)| (a - b).abs() > 1e-9 * (a.abs() + b.abs()))
     }
 
-    /// Whether a density jumps at an altitude.
+    /// Whether the extinction jumps at an altitude.
     fn jumps_at(&self, altitude: f64) -> bool {
         let nodes = self.medium.nodes();
         let i = nodes.partition_point(|&z| z < altitude);
@@ -264,8 +228,7 @@ impl<const L: usize> Exact<'_, L> {
     /// the cell, below it, far below it, and on steeper ones.
     fn cell_holds(&self, bottom: f64, top: f64) -> bool {
         const PARTS: u32 = 8;
-        let ends = self.ends(bottom, top);
-        let (low, high) = ends.split_at(self.lanes);
+        let [low, high] = self.ends(bottom, top);
         let thickness = top - bottom;
         let mut lines = vec![0.0];
         if let Shape::Sphere { radius_m } = self.shape {
@@ -277,44 +240,41 @@ impl<const L: usize> Exact<'_, L> {
         lines.into_iter().all(|p| {
             let start = p.max(0.0);
             let origin = self.distance(p, start);
-            let mut column = vec![0.0; self.lanes];
-            self.add_between(p, start, bottom, &mut column);
-            let mut columns = vec![column];
-            for i in 1..=PARTS {
-                let [from, to] = [i - 1, i].map(|i| bottom + thickness * f64::from(i) / f64::from(PARTS));
-                let mut column = columns[columns.len() - 1].clone();
-                self.add_between(p, from, to, &mut column);
-                columns.push(column);
+            let mut depths = [[0.0; L]; PARTS as usize + 1];
+            self.add_between(p, start, bottom, &mut depths[0]);
+            for i in 1..=PARTS as usize {
+                let [from, to] = [i - 1, i].map(|i| bottom + thickness * i as f64 / f64::from(PARTS));
+                depths[i] = depths[i - 1];
+                self.add_between(p, from, to, &mut depths[i]);
             }
             let length = |h: f64| self.distance(p, h) - origin;
             let (a, b) = (length(bottom), length(top));
             (1..PARTS).all(|i| {
                 let t = f64::from(i) / f64::from(PARTS);
                 let here = length(bottom + t * thickness);
-                let off: Vec<f64> = (0..self.lanes)
-                    .map(|lane| {
-                        let upper = columns[PARTS as usize][lane] / b;
-                        let upper_slope = (high[lane] - upper) * thickness * self.stretch(p, top) / b;
-                        let [mean, _] = if a > 0.0 {
-                            let lower = columns[0][lane] / a;
-                            let lower_slope = (low[lane] - lower) * thickness * self.stretch(p, bottom) / a;
-                            mean_between(t, (lower, lower_slope), (upper, upper_slope))
-                        } else {
-                            mean_from_start(t, low[lane], (upper, upper_slope))
-                        };
-                        mean * here - columns[i as usize][lane]
-                    })
-                    .collect();
-                self.depth(&off).iter().all(|e| slant * e.abs() <= self.tolerance.depth)
+                let [[between, _], [from_start, _]] = [between_weights(t), from_start_weights(t)];
+                (0..L).all(|j| {
+                    let upper = depths[PARTS as usize][j] / b;
+                    let upper_slope = (high[j] - upper) * thickness * self.stretch(p, top) / b;
+                    let (weights, lower, lower_slope) = if a > 0.0 {
+                        let lower = depths[0][j] / a;
+                        (between, lower, (low[j] - lower) * thickness * self.stretch(p, bottom) / a)
+                    } else {
+                        (from_start, low[j], 0.0)
+                    };
+                    let [w, x, y, z] = weights;
+                    let mean = w * lower + x * upper + y * lower_slope + z * upper_slope;
+                    slant * (mean * here - depths[i as usize][j]).abs() <= self.tolerance.depth
+                })
             })
         })
     }
 
-    /// Columns of the line with perigee `p` between two altitudes, added to `columns`.
-    fn add_between(&self, p: f64, from: f64, to: f64, columns: &mut [f64]) {
+    /// Optical depths of the line with perigee `p` between two altitudes, added to `depths`.
+    fn add_between(&self, p: f64, from: f64, to: f64, depths: &mut [f64; L]) {
         let first = self.steps.partition_point(|s| s.top <= from).min(self.steps.len() - 1);
         for &step in self.steps[first..].iter().take_while(|s| s.bottom < to) {
-            self.add_step(p, from, Step { top: step.top.min(to), ..step }, columns);
+            self.add_step(p, from, Step { top: step.top.min(to), ..step }, depths);
         }
     }
 
@@ -328,30 +288,24 @@ impl<const L: usize> Exact<'_, L> {
 
     /// Whether the row in the middle of two is their mean, as seen from the start of the line and from the top; `from` is
     /// the first node that counts.
-    fn mean_holds(&self, row_a: &Row, row_b: &Row, middle: &Row, from: usize) -> bool {
-        let off: Vec<([f64; L], [f64; L])> = (from..row_a.distances.len())
-            .map(|k| {
-                let [length, length_a, length_b] =
-                    [middle, row_a, row_b].map(|row| row.distances[k] - row.distances[0]);
-                let here = k * self.lanes..(k + 1) * self.lanes;
-                let off: Vec<f64> = here
-                    .clone()
-                    .enumerate()
-                    .map(|(lane, i)| {
-                        let mean = |row: &Row, length: f64| {
-                            if length > 0.0 { row.columns[i] / length } else { row.start[lane] }
-                        };
-                        0.5 * (mean(row_a, length_a) + mean(row_b, length_b)) * length - middle.columns[i]
-                    })
-                    .collect();
-                (self.depth(&off), self.depth(&middle.columns[here]))
+    fn mean_holds(&self, row_a: &Row<L>, row_b: &Row<L>, middle: &Row<L>, from: usize) -> bool {
+        let off = |k: usize| -> [f64; L] {
+            let [length, length_a, length_b] =
+                [middle, row_a, row_b].map(|row| row.distances[k] - row.distances[0]);
+            let mean = |row: &Row<L>, length: f64, j: usize| {
+                if length > 0.0 { row.depths[k][j] / length } else { row.start[j] }
+            };
+            std::array::from_fn(|j| {
+                0.5 * (mean(row_a, length_a, j) + mean(row_b, length_b, j)) * length - middle.depths[k][j]
             })
-            .collect();
-        let (whole_off, whole) = off[off.len() - 1];
-        off.iter().all(|(off, tau)| {
+        };
+        let last = middle.distances.len() - 1;
+        let (whole_off, whole) = (off(last), middle.depths[last]);
+        (from..=last).all(|k| {
+            let (off, depth) = (off(k), middle.depths[k]);
             (0..L).all(|j| {
-                off[j].abs() <= self.tolerance.allowed(tau[j])
-                    && (whole_off[j] - off[j]).abs() <= self.tolerance.allowed(whole[j] - tau[j])
+                off[j].abs() <= self.tolerance.allowed(depth[j])
+                    && (whole_off[j] - off[j]).abs() <= self.tolerance.allowed(whole[j] - depth[j])
             })
         })
     }
@@ -359,12 +313,12 @@ impl<const L: usize> Exact<'_, L> {
     /// Rows between two, wherever their mean does not hold; `from` is the first node that counts.
     fn refine(
         &self,
-        (a, row_a): (f64, Row),
-        (b, row_b): (f64, Row),
+        (a, row_a): (f64, Row<L>),
+        (b, row_b): (f64, Row<L>),
         perigee: &(dyn Fn(f64) -> f64 + Sync),
         nodes: &[f64],
         from: usize,
-    ) -> Vec<(f64, Row)> {
+    ) -> Vec<(f64, Row<L>)> {
         let mut done = vec![(a, row_a)];
         let mut todo = vec![(b, row_b)];
         while let Some((x, row)) = todo.pop() {
@@ -384,8 +338,8 @@ impl<const L: usize> Exact<'_, L> {
     }
 
     /// Rows for lines above the ground: every node of altitude is a perigee, with others between.
-    fn limb(&self, nodes: &[f64]) -> Rows {
-        let cells: Vec<Vec<(f64, Row)>> = (0..nodes.len() - 1)
+    fn limb(&self, nodes: &[f64]) -> Rows<L> {
+        let cells: Vec<Vec<(f64, Row<L>)>> = (0..nodes.len() - 1)
             .into_par_iter()
             .map(|i| {
                 // The upper row still begins in this cell: below a jump, if there is one.
@@ -405,12 +359,12 @@ impl<const L: usize> Exact<'_, L> {
     }
 
     /// Rows for lines that cut the planet, by the cosine of the zenith angle at the ground.
-    fn ground(&self, radius_m: f64, nodes: &[f64]) -> Rows {
+    fn ground(&self, radius_m: f64, nodes: &[f64]) -> Rows<L> {
         // Close enough that the middle of two tells of all between.
         const FIRST: usize = 32;
         let cosines: Vec<f64> = (0..=FIRST).map(|i| (i as f64 / FIRST as f64).powi(3)).collect();
         let perigee = |mu: f64| -radius_m * mu * mu / (1.0 + ((1.0 - mu) * (1.0 + mu)).sqrt());
-        let cells: Vec<Vec<(f64, Row)>> = cosines
+        let cells: Vec<Vec<(f64, Row<L>)>> = cosines
             .par_windows(2)
             .map(|ends| {
                 let [a, b] = [ends[0], ends[1]].map(|mu| (mu, self.row(perigee(mu), nodes)));
@@ -424,42 +378,36 @@ impl<const L: usize> Exact<'_, L> {
         self.rows(rows)
     }
 
-    /// Packs rows as the tables hold them: mean densities, below its start that of the start.
-    fn rows(&self, rows: Vec<(f64, Row)>) -> Rows {
-        let (mut means, mut starts) = (Vec::new(), Vec::new());
+    /// Packs rows as the tables hold them: mean extinctions, below its start that of the start.
+    fn rows(&self, rows: Vec<(f64, Row<L>)>) -> Rows<L> {
+        let mut means = Vec::with_capacity(rows.len() * rows[0].1.distances.len());
         for (_, row) in &rows {
-            let start = row.distances[0];
-            for k in 0..row.distances.len() {
-                for lane in 0..self.lanes {
-                    let (column, length) = (row.columns[k * self.lanes + lane], row.distances[k] - start);
-                    let mean = if length > 0.0 { column / length } else { row.start[lane] };
-                    means.push(mean as f32);
-                }
+            for (depth, distance) in row.depths.iter().zip(&row.distances) {
+                let length = distance - row.distances[0];
+                let mean = |j: usize| if length > 0.0 { depth[j] / length } else { row.start[j] };
+                means.push(std::array::from_fn(|j| mean(j) as f32));
             }
-            starts.extend(&row.start);
         }
+        let starts = rows.iter().map(|(_, row)| row.start).collect();
         Rows { at: Lookup::new(rows.into_iter().map(|(at, _)| at).collect()), means, starts }
     }
 }
 
-/// The mean density at the fraction t of a cell's height and its derivative by t, from (value, derivative by t) at both ends:
-/// the cubic that has them.
+/// The cubic with given values and derivatives at both ends of [0, 1]: the weights of (value at 0, at 1, derivative at 0,
+/// at 1) in its value at t, and in its derivative.
 #[inline]
-pub(super) fn mean_between(t: f64, (low, low_slope): (f64, f64), (high, high_slope): (f64, f64)) -> [f64; 2] {
+pub(super) fn between_weights(t: f64) -> [[f64; 4]; 2] {
     let rest = 1.0 - t;
-    let rise = high - low;
+    let (rise, bend) = (t * t * (3.0 - 2.0 * t), 6.0 * t * rest);
     [
-        low + t * t * (3.0 - 2.0 * t) * rise + t * rest * (rest * low_slope - t * high_slope),
-        6.0 * t * rest * rise + rest * (1.0 - 3.0 * t) * low_slope + t * (3.0 * t - 2.0) * high_slope,
+        [1.0 - rise, rise, t * rest * rest, -t * t * rest],
+        [-bend, bend, rest * (1.0 - 3.0 * t), t * (3.0 * t - 2.0)],
     ]
 }
 
-/// As [`mean_between`] in the cell where the line starts, with the density there: the parabola that has it and what the upper end has.
+/// As [`between_weights`], of the parabola that does not know the derivative at 0.
 #[inline]
-pub(super) fn mean_from_start(t: f64, start: f64, (high, high_slope): (f64, f64)) -> [f64; 2] {
+pub(super) fn from_start_weights(t: f64) -> [[f64; 4]; 2] {
     let rest = 1.0 - t;
-    [
-        start * rest * rest + high * t * (2.0 - t) - high_slope * t * rest,
-        2.0 * rest * (high - start) + (2.0 * t - 1.0) * high_slope,
-    ]
+    [[rest * rest, t * (2.0 - t), 0.0, -t * rest], [-2.0 * rest, 2.0 * rest, 0.0, 2.0 * t - 1.0]]
 }

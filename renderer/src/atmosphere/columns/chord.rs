@@ -1,8 +1,7 @@
 //! One line through the tables.
 
-use super::build::{mean_between, mean_from_start};
+use super::build::{between_weights, from_start_weights};
 use super::{Columns, Rows};
-use crate::atmosphere::MAX_COMPONENTS;
 use crate::geometry::{Place, Shape};
 use glam::DVec3;
 
@@ -17,21 +16,27 @@ pub struct Chord<'a, const L: usize> {
     perigee: (f64, f64),
     /// Distance in m along the line for each metre of altitude, between planes.
     slant: f64,
-    /// The two rows of means, and the share of the second.
-    rows: (&'a [f32], &'a [f32], f64),
+    /// The two rows, and the share of the second.
+    rows: Pair<'a, L>,
     /// The cell of altitude that the line starts from.
     lowest: usize,
     /// Distance of the line's start from the perigee: of the ground, or 0.
     origin: f64,
-    /// Density at the start of the line.
-    start_density: [f64; MAX_COMPONENTS],
     /// Where the ray itself begins, perhaps outside the atmosphere.
     eye: f64,
     from: f64,
     to: f64,
     ground: bool,
-    /// Columns of the lanes at `from`.
-    passed: Lanes,
+    /// Optical depths at `from`.
+    passed: [f64; L],
+}
+
+/// Two rows of a table: mean extinctions at their nodes, extinctions at their starts, and the share of the second row.
+#[derive(Debug, Clone, Copy)]
+struct Pair<'a, const L: usize> {
+    means: [&'a [[f32; L]]; 2],
+    starts: [&'a [f64; L]; 2],
+    share: f64,
 }
 
 /// What a table says at a point of a chord.
@@ -42,9 +47,6 @@ pub struct Point<const L: usize> {
     /// Its derivative by the distance in m^-1: the extinction coefficient as the table has it.
     pub slope: [f64; L],
 }
-
-/// Columns of all lanes.
-type Lanes = [f64; MAX_COMPONENTS];
 
 impl<const L: usize> Columns<L> {
     /// The chord of the ray from `place` in the unit `direction`; `None` if it never enters the atmosphere. A ray that
@@ -63,22 +65,20 @@ impl<const L: usize> Columns<L> {
                 let to = if mu > 0.0 { top * slant } else { 0.0 };
                 let eye = (h * slant).copysign(mu);
                 let from = (h.min(top) * slant).copysign(mu);
-                let rows = self.ground.pair(self.lanes, self.altitudes.nodes().len(), 0, 0.0);
                 let chord = Chord {
                     columns: self,
                     perigee: (0.0, 0.0),
                     slant,
-                    rows,
+                    rows: self.ground.pair(self.altitudes.nodes().len(), 0, 0.0),
                     lowest: 0,
                     origin: 0.0,
-                    start_density: self.ground.start(self.lanes, 0, 0.0),
                     eye,
                     from,
                     to,
                     ground: mu < 0.0,
-                    passed: [0.0; MAX_COMPONENTS],
+                    passed: [0.0; L],
                 };
-                (to > from || chord.ground).then(|| chord.begun())
+                (to > from || chord.ground).then(|| chord.begun(h.min(top)))
             }
             Shape::Sphere { radius_m } => self.spherical(radius_m, h, mu),
         }
@@ -112,10 +112,9 @@ impl<const L: usize> Columns<L> {
             columns: self,
             perigee: (perigee, radius + perigee),
             slant: 0.0,
-            rows: table.pair(self.lanes, nodes, row, share),
+            rows: table.pair(nodes, row, share),
             lowest: if cuts { 0 } else { self.altitudes.cell(perigee) },
             origin,
-            start_density: table.start(self.lanes, row, share),
             eye,
             // Rounding can put an eye on the ground below it.
             from: match (cuts, ground) {
@@ -125,9 +124,9 @@ impl<const L: usize> Columns<L> {
             },
             to,
             ground,
-            passed: [0.0; MAX_COMPONENTS],
+            passed: [0.0; L],
         };
-        (to > chord.from || ground).then(|| chord.begun())
+        (to > chord.from || ground).then(|| chord.begun(h.min(top)))
     }
 
     /// Transmittance at each wavelength from `place` in the unit `direction` out to space; `None` if the planet is in the way.
@@ -140,37 +139,30 @@ impl<const L: usize> Columns<L> {
             Some(chord) => Some(chord.total().map(|tau| (-tau).exp())),
         }
     }
+}
 
-    /// Optical depths of columns.
+impl<const L: usize> Rows<L> {
+    /// Rows `row` and `row + 1`, each of `nodes` nodes.
     #[inline]
-    fn depths(&self, columns: &Lanes) -> [f64; L] {
-        let mut depth = [0.0; L];
-        for (column, sigma) in columns.iter().zip(&self.extinction) {
-            for (depth, sigma) in depth.iter_mut().zip(sigma) {
-                *depth += column * sigma;
-            }
-        }
-        depth
+    fn pair(&self, nodes: usize, row: usize, share: f64) -> Pair<'_, L> {
+        let (a, b) = self.means[row * nodes..(row + 2) * nodes].split_at(nodes);
+        Pair { means: [a, b], starts: [&self.starts[row], &self.starts[row + 1]], share }
     }
 }
 
-impl Rows {
-    /// Rows `row` and `row + 1`.
+impl<const L: usize> Pair<'_, L> {
+    /// Mean extinction up to node `k` at wavelength `j`.
     #[inline]
-    fn pair(&self, lanes: usize, nodes: usize, row: usize, share: f64) -> (&[f32], &[f32], f64) {
-        let length = lanes * nodes;
-        let (a, b) = self.means[row * length..(row + 2) * length].split_at(length);
-        (a, b, share)
+    fn mean(&self, k: usize, j: usize) -> f64 {
+        let [a, b] = self.means.map(|row| f64::from(row[k][j]));
+        a + self.share * (b - a)
     }
 
+    /// Extinction at the start of the line at wavelength `j`.
     #[inline]
-    fn start(&self, lanes: usize, row: usize, share: f64) -> Lanes {
-        let (a, b) = self.starts[row * lanes..(row + 2) * lanes].split_at(lanes);
-        let mut start = [0.0; MAX_COMPONENTS];
-        for (start, (a, b)) in start.iter_mut().zip(a.iter().zip(b)) {
-            *start = a + share * (b - a);
-        }
-        start
+    fn start(&self, j: usize) -> f64 {
+        let [a, b] = self.starts.map(|start| start[j]);
+        a + self.share * (b - a)
     }
 }
 
@@ -205,35 +197,44 @@ impl<const L: usize> Chord<'_, L> {
         }
     }
 
-    /// The chord with the columns of its beginning.
+    /// The chord with the optical depths of its beginning, which is at that altitude.
     #[inline]
-    fn begun(mut self) -> Self {
-        self.passed = self.column_and_slope(self.from).0;
+    fn begun(mut self, altitude: f64) -> Self {
+        let distance = self.from.abs();
+        if distance > self.origin {
+            let cell = self.cell(self.columns.altitudes.cell(altitude).max(self.lowest));
+            self.passed = self.depths(&cell, altitude, distance);
+            if self.from < 0.0 {
+                self.passed = self.passed.map(|depth| -depth);
+            }
+        }
         self
     }
 
-    /// Optical depth of the whole chord: it ends on the ground, from which columns count, or at the last node.
+    /// Optical depth of the whole chord: it ends on the ground, from which depths count, or at the last node.
     #[must_use]
     #[inline]
     pub fn total(&self) -> [f64; L] {
         let last = self.columns.altitudes.nodes().len() - 1;
         let length = if self.ground { 0.0 } else { self.to - self.origin };
-        let mut column = [0.0; MAX_COMPONENTS];
-        for (lane, column) in column.iter_mut().enumerate().take(self.columns.lanes) {
-            *column = self.node_mean(last, lane) * length - self.passed[lane];
-        }
-        self.columns.depths(&column)
+        std::array::from_fn(|j| self.rows.mean(last, j) * length - self.passed[j])
     }
 
     /// Optical depth from the beginning to a point of the chord, and its slope there.
     #[must_use]
     #[inline]
     pub fn point(&self, s: f64) -> Point<L> {
-        let (mut column, slope) = self.column_and_slope(s);
-        for (column, passed) in column.iter_mut().zip(&self.passed) {
-            *column -= passed;
-        }
-        Point { depth: self.columns.depths(&column), slope: self.columns.depths(&slope) }
+        let distance = s.abs();
+        let altitude = self.altitude(distance);
+        let cell = self.cell(self.columns.altitudes.cell(altitude).max(self.lowest));
+        self.seen_from_the_beginning(self.point_of_line(&cell, altitude, distance), s)
+    }
+
+    /// A point counted from the line's start, as one at `s` counted from the beginning of the chord.
+    #[inline]
+    fn seen_from_the_beginning(&self, point: Point<L>, s: f64) -> Point<L> {
+        let sign = if s < 0.0 { -1.0 } else { 1.0 };
+        Point { depth: std::array::from_fn(|j| sign * point.depth[j] - self.passed[j]), ..point }
     }
 
     /// Distance in m from the perigee at which the line passes an altitude in m.
@@ -257,24 +258,6 @@ impl<const L: usize> Chord<'_, L> {
         self.distance(self.columns.altitudes.nodes()[k])
     }
 
-    /// Mean density of a lane up to node `k`.
-    #[inline]
-    fn node_mean(&self, k: usize, lane: usize) -> f64 {
-        let i = k * self.columns.lanes + lane;
-        let (a, b, share) = self.rows;
-        let (a, b) = (f64::from(a[i]), f64::from(b[i]));
-        a + share * (b - a)
-    }
-
-    /// ds/dh where the altitude is `h` and the distance from the perigee is `s`.
-    #[inline]
-    fn stretch(&self, h: f64, s: f64) -> f64 {
-        match self.columns.shape {
-            Shape::Flat => self.slant,
-            Shape::Sphere { .. } => (self.perigee.1 + (h - self.perigee.0)) / s,
-        }
-    }
-
     /// Cell `k` of this line; the lowest begins where the line does.
     #[inline]
     fn cell(&self, k: usize) -> Cell {
@@ -283,143 +266,159 @@ impl<const L: usize> Chord<'_, L> {
         let start = k == self.lowest;
         let from = if start { from.max(self.perigee.0) } else { from };
         let height = to - from;
-        let slope = |h: f64, k: usize| {
+        // Length on the line and height (ds/dh) / length, with ds/dh = (R + h) / s.
+        let end = |h: f64, k: usize| {
             let s = self.node_distance(k);
             let length = s - self.origin;
-            (length, if length > 0.0 { height * self.stretch(h, s) / length } else { 0.0 })
+            let rise = match self.columns.shape {
+                Shape::Flat => height * self.slant / length,
+                Shape::Sphere { .. } => height * (self.perigee.1 + (h - self.perigee.0)) / (s * length),
+            };
+            (length, if length > 0.0 { rise } else { 0.0 })
         };
-        let (low_length, low_factor) = if start { (0.0, 0.0) } else { slope(from, k) };
-        let (high_length, high_factor) = slope(to, k + 1);
-        Cell { k, start, from, height, low_length, low_factor, high_length, high_factor }
+        let (low_length, low_factor) = if start { (0.0, 0.0) } else { end(from, k) };
+        let (high_length, high_factor) = end(to, k + 1);
+        let per_height = if height > 0.0 { 1.0 / height } else { 0.0 };
+        Cell { k, start, from, per_height, low_length, low_factor, high_length, high_factor }
     }
 
-    /// Mean density up to the fraction t of a cell and its derivative by t.
+    /// The mean extinction from the line's start by the weights of what the cell's ends have.
     #[inline]
-    fn mean(&self, cell: &Cell, lane: usize, t: f64) -> [f64; 2] {
-        let lanes = self.columns.lanes;
-        let densities = &self.columns.densities[2 * cell.k * lanes..2 * (cell.k + 1) * lanes];
-        let high = self.node_mean(cell.k + 1, lane);
-        let high = (high, (densities[lanes + lane] - high) * cell.high_factor);
-        if cell.start {
-            mean_from_start(t, self.start_density[lane], high)
-        } else {
-            let low = self.node_mean(cell.k, lane);
-            mean_between(t, (low, (densities[lane] - low) * cell.low_factor), high)
-        }
+    fn weigh(&self, cell: &Cell, weights: [f64; 4], j: usize) -> f64 {
+        let [at_low, at_high] = &self.columns.extinction[cell.k];
+        let low = if cell.start { self.rows.start(j) } else { self.rows.mean(cell.k, j) };
+        let high = self.rows.mean(cell.k + 1, j);
+        weights[0] * low + weights[1] * high + (weights[2] * at_low[j] + weights[3] * at_high[j])
     }
 
-    /// Column of each lane from the line's start to |s|, with the sign of s, and the densities there.
+    /// Weights of the mean and of its derivative by the fraction t of a cell, for (low, high, extinction at either).
     #[inline]
-    fn column_and_slope(&self, s: f64) -> (Lanes, Lanes) {
-        let distance = s.abs();
-        let (mut columns, mut slopes) = ([0.0; MAX_COMPONENTS], [0.0; MAX_COMPONENTS]);
-        let altitude = self.altitude(distance);
-        let cell = self.cell(self.columns.altitudes.cell(altitude).max(self.lowest));
+    fn weights(cell: &Cell, t: f64) -> [[f64; 4]; 2] {
+        let [value, derivative] = if cell.start { from_start_weights(t) } else { between_weights(t) };
+        let (a, b) = (cell.low_factor, cell.high_factor);
+        // The slopes of the mean at the ends are factor (extinction - mean).
+        [value, derivative].map(|w| [w[0] - a * w[2], w[1] - b * w[3], a * w[2], b * w[3]])
+    }
+
+    /// Optical depths from the line's start to a distance from the perigee, where the altitude is `altitude`.
+    #[inline]
+    fn depths(&self, cell: &Cell, altitude: f64, distance: f64) -> [f64; L] {
         let length = (distance - self.origin).max(0.0);
-        let (t, by_distance) = self.fraction(&cell, altitude, distance);
-        for lane in 0..self.columns.lanes {
-            let [mean, slope] = self.mean(&cell, lane, t);
-            columns[lane] = mean * length;
-            slopes[lane] = mean + slope * length * by_distance;
-        }
-        if s < 0.0 {
-            columns.iter_mut().for_each(|c| *c = -*c);
-        }
-        (columns, slopes)
+        let [value, _] = Self::weights(cell, cell.fraction(altitude));
+        std::array::from_fn(|j| length * self.weigh(cell, value, j))
     }
 
-    /// Fraction t of a cell's height, and dt/ds.
+    /// As [`Chord::depths`], with the slopes.
     #[inline]
-    fn fraction(&self, cell: &Cell, altitude: f64, distance: f64) -> (f64, f64) {
-        if cell.height <= 0.0 {
-            return (1.0, 0.0);
+    fn point_of_line(&self, cell: &Cell, altitude: f64, distance: f64) -> Point<L> {
+        let length = (distance - self.origin).max(0.0);
+        let [value, derivative] = Self::weights(cell, cell.fraction(altitude));
+        // dh/ds = s / (R + h)
+        let by_distance = cell.per_height
+            * match self.columns.shape {
+                Shape::Flat => 1.0 / self.slant,
+                Shape::Sphere { .. } => distance / (self.perigee.1 + (altitude - self.perigee.0)),
+            };
+        let mut point = Point { depth: [0.0; L], slope: [0.0; L] };
+        for j in 0..L {
+            let mean = self.weigh(cell, value, j);
+            point.depth[j] = mean * length;
+            point.slope[j] = mean + self.weigh(cell, derivative, j) * length * by_distance;
         }
-        let t = ((altitude - cell.from) / cell.height).clamp(0.0, 1.0);
-        let by_distance = match self.columns.shape {
-            Shape::Flat => 1.0 / self.slant,
-            Shape::Sphere { .. } => distance / (self.perigee.1 + (altitude - self.perigee.0)),
-        };
-        (t, by_distance / cell.height)
+        point
     }
 
-    /// The point at which the optical depth from the beginning of the chord reaches `depth` at wavelength `hero`; the
-    /// chord's end if it does not.
+    /// The place s at which the optical depth from the beginning of the chord reaches `depth` at wavelength `hero`, the
+    /// chord's end if it does not; and what the table says there.
     #[must_use]
-    pub fn at_depth(&self, hero: usize, depth: f64) -> f64 {
-        let target = self.hero(hero, &self.passed) + depth;
-        // Before the perigee columns count backwards.
-        let s = self.invert(hero, target.abs()).copysign(target);
-        s.clamp(self.from, self.to)
+    #[inline]
+    pub fn at_depth(&self, hero: usize, depth: f64) -> (f64, Point<L>) {
+        let target = self.passed[hero] + depth;
+        // Before the perigee depths count backwards.
+        let (distance, point) = self.invert(hero, target.abs());
+        let s = distance.copysign(target);
+        let within = s.clamp(self.from, self.to);
+        (within, if within == s { self.seen_from_the_beginning(point, s) } else { self.point(within) })
     }
 
+    /// Distance from the perigee at which the optical depth from the line's start is `target`, and the point there.
     #[inline]
-    fn hero(&self, hero: usize, columns: &Lanes) -> f64 {
-        columns.iter().zip(&self.columns.extinction).map(|(column, sigma)| column * sigma[hero]).sum()
-    }
-
-    /// Distance from the perigee at which the optical depth from the line's start is `target`.
-    #[inline]
-    fn invert(&self, hero: usize, target: f64) -> f64 {
-        let columns = self.columns;
-        let node_depth = |k: usize| {
-            let length = self.node_distance(k) - self.origin;
-            let density: f64 =
-                (0..columns.lanes).map(|lane| self.node_mean(k, lane) * columns.extinction[lane][hero]).sum();
-            density * length
+    fn invert(&self, hero: usize, target: f64) -> (f64, Point<L>) {
+        let nodes = self.columns.altitudes.nodes();
+        // Whether the depth of node k is at most the target: mean (s - origin) <= target, squared where s is a root.
+        let passed = |k: usize| {
+            let mean = self.rows.mean(k, hero);
+            match self.columns.shape {
+                Shape::Flat => mean * nodes[k] * self.slant <= target,
+                Shape::Sphere { .. } => {
+                    let above = (nodes[k] - self.perigee.0).max(0.0);
+                    let reach = target + mean * self.origin;
+                    mean * mean * (above * (2.0 * self.perigee.1 + above)) <= reach * reach
+                }
+            }
         };
-        // The last node whose depth is not above the target.
-        let (mut low, mut high) = (self.lowest, columns.altitudes.nodes().len() - 1);
+        let (mut low, mut high) = (self.lowest, nodes.len() - 1);
         while high - low > 1 {
             let middle = (low + high) / 2;
-            if node_depth(middle) <= target { low = middle } else { high = middle }
+            if passed(middle) { low = middle } else { high = middle }
         }
         let cell = self.cell(low);
-        // The depth rises with the distance: Newton, kept between ends that enclose the root.
+        let [at_low, at_high] = &self.columns.extinction[low];
+        let (bottom, slope_low) = if cell.start {
+            (0.0, self.rows.start(hero))
+        } else {
+            (self.rows.mean(low, hero) * cell.low_length, at_low[hero])
+        };
+        let rise = self.rows.mean(low + 1, hero) * cell.high_length - bottom;
         let (mut least, mut most) = (self.origin + cell.low_length, self.origin + cell.high_length);
-        let bottom = if cell.start { 0.0 } else { node_depth(low) };
-        let rise = node_depth(low + 1) - bottom;
+        let point = |s: f64| self.point_of_line(&cell, self.altitude(s), s);
         if rise <= 0.0 || target - bottom >= rise {
-            return most;
+            return (most, point(most));
         }
-        let mut s = least + (most - least) * ((target - bottom) / rise).max(0.0);
+        // The depth rises with the distance. The first guess is the cubic for s by depth with the right slopes at the ends, if these are slopes;
+        // then Newton's rule, kept between ends that enclose the root.
+        let share = ((target - bottom) / rise).max(0.0);
+        let straight = most - least;
+        let [slow, fast] = [slope_low, at_high[hero]].map(|slope| (rise / (slope * straight)).clamp(0.0, 3.0));
+        let [w, _] = between_weights(share);
+        let mut s = least + straight * (w[1] + slow * w[2] + fast * w[3]).clamp(0.0, 1.0);
         for _ in 0..60 {
-            let altitude = self.altitude(s);
-            let (t, by_distance) = self.fraction(&cell, altitude, s);
-            let length = (s - self.origin).max(0.0);
-            let (mut mean, mut slope) = (0.0, 0.0);
-            for (lane, sigma) in columns.extinction.iter().enumerate() {
-                let [value, derivative] = self.mean(&cell, lane, t);
-                mean += value * sigma[hero];
-                slope += derivative * sigma[hero];
+            let here = point(s);
+            let off = here.depth[hero] - target;
+            if off.abs() <= INVERSION * rise {
+                return (s, here);
             }
-            let off = mean * length - target;
-            if off.abs() <= 1e-10 * rise {
-                break;
-            }
-            if off > 0.0 {
-                most = s
-            } else {
-                least = s
-            }
-            let next = s - off / (mean + slope * length * by_distance);
+            if off > 0.0 { most = s } else { least = s }
+            let next = s - off / here.slope[hero];
             s = if next > least && next < most { next } else { 0.5 * (least + most) };
         }
-        s
+        (s, point(s))
     }
 }
+
+/// How exactly a depth is met, as a share of that of the cell: the density of what is drawn is off by about as much.
+const INVERSION: f64 = 1e-7;
 
 /// A cell of altitude on one line.
 struct Cell {
     k: usize,
     /// Whether the line starts in it.
     start: bool,
-    /// Its lower end in m, and its height.
+    /// Its lower end in m, and 1 / height.
     from: f64,
-    height: f64,
+    per_height: f64,
     /// Distances of its ends from the line's start.
     low_length: f64,
     high_length: f64,
-    /// height (ds/dh) / length: what turns density - mean into the derivative of the mean by the fraction of the cell.
+    /// height (ds/dh) / length: what turns extinction - mean into the derivative of the mean by the fraction of the cell.
     low_factor: f64,
     high_factor: f64,
+}
+
+impl Cell {
+    /// The fraction of the height below an altitude; the upper end of a cell without height.
+    #[inline]
+    fn fraction(&self, altitude: f64) -> f64 {
+        if self.per_height > 0.0 { ((altitude - self.from) * self.per_height).clamp(0.0, 1.0) } else { 1.0 }
+    }
 }

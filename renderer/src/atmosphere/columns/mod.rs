@@ -2,16 +2,18 @@
 //!
 //! A ray through concentric shells is fixed by its perigee p, the lowest altitude of the line it lies on (below
 //! zero if the line cuts the planet), and a point of it by the distance s from the perigee,
-//! s^2 = (h - p)(2R + h + p). The column of a species between the perigee and the altitude h,
-//! N(p, h) = int_0^s n(h(s')) ds',
-//! has a branch at h = p (it begins like a root of h - p); the mean density on the way, N / s, has none and is what
+//! s^2 = (h - p)(2R + h + p). The optical depth between the perigee and the altitude h,
+//! tau(p, h) = int_0^s sigma(h(s')) ds',
+//! has a branch at h = p (it begins like a root of h - p); the mean extinction on the way, tau / s, has none and is what
 //! the table holds, at nodes of h for each of many p. Between two rows it is linear in p; between two nodes of h it
 //! is the cubic in h that has the right values and the right slopes at both ends, for the slope
-//! d(N / s)/dh = (n - N / s) (ds/dh) / s follows from the density there. Lines that cut the planet have a table of their own: columns count from the ground, rows go by the cosine of the zenith angle
-//! there.
+//! d(tau / s)/dh = (sigma - tau / s) (ds/dh) / s follows from the extinction there. Lines that cut the planet have a
+//! table of their own: depths count from the ground, rows go by the cosine of the zenith angle there.
 //!
-//! Nodes follow from the medium and from [`Tolerance`]: nodes of h where a profile jumps and wherever the cubic needs
+//! Nodes follow from the medium and from [`Tolerance`]: nodes of h where the extinction jumps and wherever the cubic needs
 //! them, rows wherever the middle of two is not their mean. Between planes all lines are alike, and the table is one row.
+//! The numbers are per wavelength, not per species: a look-up then needs no sum over species, and scenes have about as many
+//! of one as of the other.
 
 mod build;
 mod chord;
@@ -25,46 +27,40 @@ use super::lookup::Lookup;
 use crate::geometry::Shape;
 
 /// Columns of a medium at `L` wavelengths.
-///
-/// The table holds columns of species, or optical depths at the wavelengths where these are fewer: `lanes` numbers a node.
 #[derive(Debug, Clone)]
 pub struct Columns<const L: usize> {
     shape: Shape,
-    /// Numbers at each node.
-    lanes: usize,
-    /// Extinction at each wavelength for each lane: optical depth is the sum over lanes of column times this.
-    extinction: Vec<[f64; L]>,
     /// Altitudes of the nodes in m, from 0 to the top.
     altitudes: Lookup,
-    /// Densities [cell][bottom, top][lane], each from inside the cell.
-    densities: Vec<f64>,
-    limb: Rows,
-    ground: Rows,
+    /// Extinction coefficients [cell][bottom, top] in m^-1, each from inside the cell.
+    extinction: Vec<[[f64; L]; 2]>,
+    limb: Rows<L>,
+    ground: Rows<L>,
 }
 
-/// Rows of mean densities.
+/// Rows of mean extinctions.
 #[derive(Debug, Clone)]
-struct Rows {
+struct Rows<const L: usize> {
     /// Perigee altitudes in m, or cosines at the ground.
     at: Lookup,
-    /// Mean densities [row][node][lane].
-    means: Vec<f32>,
-    /// Density at the start of each row [row][lane].
-    starts: Vec<f64>,
+    /// Mean extinction in m^-1 from the start of the line [row][node].
+    means: Vec<[f32; L]>,
+    /// Extinction at the start of each row.
+    starts: Vec<[f64; L]>,
 }
 
 impl<const L: usize> Columns<L> {
-    /// Numbers of (altitudes, rows above the ground, rows to the ground, numbers at a node).
+    /// Numbers of (altitudes, rows above the ground, rows to the ground).
     #[must_use]
-    pub fn size(&self) -> [usize; 4] {
-        [self.altitudes.nodes().len(), self.limb.at.nodes().len(), self.ground.at.nodes().len(), self.lanes]
+    pub fn size(&self) -> [usize; 3] {
+        [self.altitudes.nodes().len(), self.limb.at.nodes().len(), self.ground.at.nodes().len()]
     }
 
     /// Bytes of the tables.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        4 * (self.limb.means.len() + self.ground.means.len())
-            + 8 * (self.limb.starts.len() + self.ground.starts.len() + self.densities.len())
+        4 * L * (self.limb.means.len() + self.ground.means.len())
+            + 8 * L * (self.limb.starts.len() + self.ground.starts.len() + 2 * self.extinction.len())
     }
 
     /// Altitude of the top in m.

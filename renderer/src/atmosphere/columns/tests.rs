@@ -98,10 +98,10 @@ fn depths_along_a_chord_rise_by_their_slope_and_are_inverted() {
             for share in [0.1, 0.9] {
                 let s = at(f64::from(i) + share);
                 let depth = chord.point(s).depth[1];
-                let back = chord.point(chord.at_depth(1, depth)).depth[1];
-                // Single precision of the tables cancels between nearly equal columns.
+                let back = chord.at_depth(1, depth).1.depth[1];
+                // What the inversion leaves.
                 assert!(
-                    (back - depth).abs() <= 1e-10 * (1.0 + total[1]),
+                    (back - depth).abs() <= 1e-7 * (1.0 + total[1]),
                     "{altitude} m, zenith {zenith}: {back} for {depth}"
                 );
             }
