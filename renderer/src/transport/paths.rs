@@ -269,7 +269,8 @@ fn line<const L: usize>(
         let past = -(-u * mass[hero] * start[hero].exp()).max(-1.0).ln_1p();
         let (s, point) = chord.at_depth(hero, start[hero] + past);
         // Rounding can pass the end of what is lit.
-        let (s, point) = if s >= from && s <= to { (s, point) } else { (s.clamp(from, to), chord.point(s.clamp(from, to))) };
+        let (s, point) =
+            if s >= from && s <= to { (s, point) } else { (s.clamp(from, to), chord.point(s.clamp(from, to))) };
         let Some(Seen { scattered, through }) = sight.at(s) else { continue };
         let arrives = point.depth.map(|depth| (-depth).exp());
         let slope = point.slope.map(|slope| slope.max(0.0));

@@ -290,8 +290,7 @@ impl<const L: usize> Exact<'_, L> {
     /// the first node that counts.
     fn mean_holds(&self, row_a: &Row<L>, row_b: &Row<L>, middle: &Row<L>, from: usize) -> bool {
         let off = |k: usize| -> [f64; L] {
-            let [length, length_a, length_b] =
-                [middle, row_a, row_b].map(|row| row.distances[k] - row.distances[0]);
+            let [length, length_a, length_b] = [middle, row_a, row_b].map(|row| row.distances[k] - row.distances[0]);
             let mean = |row: &Row<L>, length: f64, j: usize| {
                 if length > 0.0 { row.depths[k][j] / length } else { row.start[j] }
             };
@@ -399,10 +398,7 @@ impl<const L: usize> Exact<'_, L> {
 pub(super) fn between_weights(t: f64) -> [[f64; 4]; 2] {
     let rest = 1.0 - t;
     let (rise, bend) = (t * t * (3.0 - 2.0 * t), 6.0 * t * rest);
-    [
-        [1.0 - rise, rise, t * rest * rest, -t * t * rest],
-        [-bend, bend, rest * (1.0 - 3.0 * t), t * (3.0 * t - 2.0)],
-    ]
+    [[1.0 - rise, rise, t * rest * rest, -t * t * rest], [-bend, bend, rest * (1.0 - 3.0 * t), t * (3.0 * t - 2.0)]]
 }
 
 /// As [`between_weights`], of the parabola that does not know the derivative at 0.

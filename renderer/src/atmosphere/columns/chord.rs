@@ -388,7 +388,11 @@ impl<const L: usize> Chord<'_, L> {
             if off.abs() <= INVERSION * rise {
                 return (s, here);
             }
-            if off > 0.0 { most = s } else { least = s }
+            if off > 0.0 {
+                most = s
+            } else {
+                least = s
+            }
             let next = s - off / here.slope[hero];
             s = if next > least && next < most { next } else { 0.5 * (least + most) };
         }
