@@ -8,7 +8,7 @@ use crate::sweep::{Bad, Departure, Fault, LAW, Plan, Report, Scene, Traced, laws
 use crate::transport::Method;
 
 /// Skies under which the laws are checked.
-const SKIES: u64 = 64;
+const SKIES: u64 = 16;
 
 pub(super) fn run(args: &SweepArgs) -> Result<Outcome, Failure> {
     let plan = Plan { seed: args.seed, paths: args.paths, method: args.method.into() };

@@ -22,11 +22,11 @@ use tables::units::KM;
 /// Largest relative departure from a law that interpolation and quadrature may make.
 pub const LAW: f64 = 1e-3;
 
-/// Points of a Sobol sequence that a radiance is the mean of.
+/// Points of a Sobol sequence that a radiance is the mean of, for each wavelength.
 const POINTS: u32 = 4096;
 
 /// Cells of a sum without tables, on either side of the foot.
-const CELLS: u32 = 1024;
+const CELLS: u32 = 4096;
 
 /// How far from the horizon in degrees.
 const HAIR_DEG: f64 = 1e-6;
@@ -105,11 +105,12 @@ fn check<const L: usize>(scene: Scene, seed: u64, number: u64) -> Laws {
 /// Singly scattered radiance in sr^-1.
 fn single<const L: usize>(problem: &Problem<'_, L>, from: Place, direction: DVec3) -> [f64; L] {
     let mut mean = [0.0; L];
-    for point in 0..POINTS {
+    let points = POINTS * L as u32;
+    for point in 0..points {
         let mut sampler = Sampler::sobol(0, 0, 0, point);
         let radiance = transport::radiance(Method::Paths, problem, from, direction, &mut sampler);
         for (mean, radiance) in mean.iter_mut().zip(radiance) {
-            *mean += radiance / f64::from(POINTS);
+            *mean += radiance / f64::from(points);
         }
     }
     mean

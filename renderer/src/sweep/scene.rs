@@ -13,7 +13,7 @@ use tables::units::KM;
 use tables::{Axis, Curve, Interpolation, Outside, Scale, TableError};
 
 /// Scenes that share an atmosphere and its tables, which cost more than the paths of one scene.
-pub(super) const SHARE: u64 = 16;
+pub(super) const SHARE: u64 = 32;
 
 /// Altitude in m to which profiles reach.
 const REACH_M: f64 = 120.0 * KM;

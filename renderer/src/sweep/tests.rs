@@ -36,6 +36,6 @@ fn sweep_notices_what_is_wrong() {
 
 #[test]
 fn sweep_keeps_the_laws() {
-    let laws = laws(0, 24);
+    let laws = laws(0, 8);
     assert!(laws.kept(), "{laws:?}");
 }
