@@ -281,24 +281,34 @@ impl<const L: usize> Chord<'_, L> {
         let nodes = self.columns.altitudes.nodes();
         let (from, to) = (nodes[k], nodes[k + 1]);
         let start = k == self.lowest;
+        // Where a line turns just below the cell, the mean from there has a slope that rounding or a jump make as steep as
+        // one over that distance; the mean from the bottom of the cell has not.
+        let turned = k == self.lowest + 1 && self.perigee.0 > 0.0 && from - self.perigee.0 < to - from;
         let from = if start { from.max(self.perigee.0) } else { from };
         let height = to - from;
+        let low_length = if start { 0.0 } else { self.node_distance(k) - self.origin };
+        let skipped = if turned { low_length } else { 0.0 };
         let slope = |h: f64, k: usize| {
             let s = self.node_distance(k);
-            let length = s - self.origin;
-            (length, if length > 0.0 { height * self.stretch(h, s) / length } else { 0.0 })
+            let length = s - self.origin - skipped;
+            (length + skipped, if length > 0.0 { height * self.stretch(h, s) / length } else { 0.0 })
         };
-        let (low_length, low_factor) = if start { (0.0, 0.0) } else { slope(from, k) };
+        let low_factor = if start || turned { 0.0 } else { slope(from, k).1 };
         let (high_length, high_factor) = slope(to, k + 1);
-        Cell { k, start, from, height, low_length, low_factor, high_length, high_factor }
+        Cell { k, start, skipped, from, height, low_length, low_factor, high_length, high_factor }
     }
 
-    /// Mean density up to the fraction t of a cell and its derivative by t.
+    /// Mean density up to the fraction t of a cell, from where the cell's means count, and its derivative by t.
     #[inline]
     fn mean(&self, cell: &Cell, lane: usize, t: f64) -> [f64; 2] {
         let lanes = self.columns.lanes;
         let densities = &self.columns.densities[2 * cell.k * lanes..2 * (cell.k + 1) * lanes];
         let high = self.node_mean(cell.k + 1, lane);
+        if cell.skipped > 0.0 {
+            let column = high * cell.high_length - self.skipped(cell, lane);
+            let high = column / (cell.high_length - cell.skipped);
+            return mean_from_start(t, densities[lane], (high, (densities[lanes + lane] - high) * cell.high_factor));
+        }
         let high = (high, (densities[lanes + lane] - high) * cell.high_factor);
         if cell.start {
             mean_from_start(t, self.start_density[lane], high)
@@ -308,6 +318,12 @@ impl<const L: usize> Chord<'_, L> {
         }
     }
 
+    /// Column of a lane below a cell whose means count from its bottom.
+    #[inline]
+    fn skipped(&self, cell: &Cell, lane: usize) -> f64 {
+        if cell.skipped > 0.0 { self.node_mean(cell.k, lane) * cell.skipped } else { 0.0 }
+    }
+
     /// Column of each lane from the line's start to |s|, with the sign of s, and the densities there.
     #[inline]
     fn column_and_slope(&self, s: f64) -> (Lanes, Lanes) {
@@ -315,11 +331,11 @@ impl<const L: usize> Chord<'_, L> {
         let (mut columns, mut slopes) = ([0.0; MAX_COMPONENTS], [0.0; MAX_COMPONENTS]);
         let altitude = self.altitude(distance);
         let cell = self.cell(self.columns.altitudes.cell(altitude).max(self.lowest));
-        let length = (distance - self.origin).max(0.0);
+        let length = (distance - self.origin - cell.skipped).max(0.0);
         let (t, by_distance) = self.fraction(&cell, altitude, distance);
         for lane in 0..self.columns.lanes {
             let [mean, slope] = self.mean(&cell, lane, t);
-            columns[lane] = mean * length;
+            columns[lane] = self.skipped(&cell, lane) + mean * length;
             slopes[lane] = mean + slope * length * by_distance;
         }
         if s < 0.0 {
@@ -381,18 +397,19 @@ impl<const L: usize> Chord<'_, L> {
         if rise <= 0.0 || target - bottom >= rise {
             return most;
         }
+        let skipped = if cell.skipped > 0.0 { bottom } else { 0.0 };
         let mut s = least + (most - least) * ((target - bottom) / rise).max(0.0);
         for _ in 0..60 {
             let altitude = self.altitude(s);
             let (t, by_distance) = self.fraction(&cell, altitude, s);
-            let length = (s - self.origin).max(0.0);
+            let length = (s - self.origin - cell.skipped).max(0.0);
             let (mut mean, mut slope) = (0.0, 0.0);
             for (lane, sigma) in columns.extinction.iter().enumerate() {
                 let [value, derivative] = self.mean(&cell, lane, t);
                 mean += value * sigma[hero];
                 slope += derivative * sigma[hero];
             }
-            let off = mean * length - target;
+            let off = skipped + mean * length - target;
             if off.abs() <= 1e-10 * rise {
                 break;
             }
@@ -413,6 +430,8 @@ struct Cell {
     k: usize,
     /// Whether the line starts in it.
     start: bool,
+    /// Distance from the line's start to where the cell's means count from: 0, or its bottom.
+    skipped: f64,
     /// Its lower end in m, and its height.
     from: f64,
     height: f64,
