@@ -104,14 +104,19 @@ impl<const L: usize> World<L> {
         }
     }
 
-    /// A path's radiance and its number of orders.
-    fn guarded_trace(&self, plan: &Plan, drawn: &Scene, scene: u64, path: u64) -> Result<([f64; L], u32), Fault> {
+    /// A path's radiance and its number of orders, in a scene with its sun.
+    fn guarded_trace(
+        &self,
+        plan: &Plan,
+        (drawn, sun): (&Scene, Option<&SunDisc<L>>),
+        scene: u64,
+        path: u64,
+    ) -> Result<([f64; L], u32), Fault> {
         let traced = catch_unwind(AssertUnwindSafe(|| {
-            let sun = drawn.sun();
             let (from, direction) =
                 (Place::above(drawn.altitude_m), towards(drawn.view_zenith_deg, drawn.view_azimuth_deg));
             let mut sampler = Sampler::sobol(plan.seed, scene, 0, path as u32);
-            let problem = self.problem(drawn, sun.as_ref());
+            let problem = self.problem(drawn, sun);
             let radiance = transport::radiance(plan.method, &problem, from, direction, &mut sampler);
             // Sets 2n and 2n + 1 are those of order n; a path is at the last that it has used or the next.
             (radiance, sampler.set() / 2)
@@ -182,9 +187,10 @@ impl Plan {
                 }
             };
             let drawn = Scene::under(sky.clone(), self.seed, scene);
+            let sun = drawn.sun();
             let mut kept = 0;
             for path in 0..paths {
-                let fault = match world.guarded_trace(self, &drawn, scene, path) {
+                let fault = match world.guarded_trace(self, (&drawn, sun.as_ref()), scene, path) {
                     Ok((radiance, orders)) => {
                         report.most_orders = report.most_orders.max(orders);
                         fault(&radiance, orders)
@@ -217,7 +223,7 @@ impl Plan {
 
     fn retrace<const L: usize>(&self, drawn: &Scene, scene: u64, path: u64) -> Result<Traced, Fault> {
         let world = World::<L>::guarded(&drawn.sky)?;
-        let (radiance, orders) = world.guarded_trace(self, drawn, scene, path)?;
+        let (radiance, orders) = world.guarded_trace(self, (drawn, drawn.sun().as_ref()), scene, path)?;
         Ok(Traced { radiance: radiance.to_vec(), orders, fault: fault(&radiance, orders) })
     }
 }
