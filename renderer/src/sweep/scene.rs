@@ -98,7 +98,7 @@ impl Sky {
                     (0..4).map(|i| 300.0 + 175.0 * (f64::from(i) + (wavelength + f64::from(i) * u) % 1.0)).collect()
                 }
             },
-            ozone: lanes < 0.4 || lanes > 0.6,
+            ozone: !(0.4..=0.6).contains(&lanes),
             aerosol: match part(amount, [0.1, 0.1, 0.3, 0.5]) {
                 (0, _) => None,
                 (1, _) => Some(0.0),
