@@ -43,7 +43,7 @@ pub struct Case {
 }
 
 /// Rayleigh optical depth at a wavelength in um.
-fn molecules(um: f64) -> f64 {
+pub(crate) fn molecules(um: f64) -> f64 {
     0.008_569 * um.powi(-4) * (1.0 + 0.0113 * um.powi(-2) + 0.000_13 * um.powi(-4))
 }
 

@@ -73,6 +73,12 @@ impl Sampler {
         }
     }
 
+    /// The set that comes next, which says how far a path has come; 0 for a stream that is no point of a sequence.
+    #[must_use]
+    pub fn set(&self) -> u32 {
+        self.point.map_or(0, |point| point.set)
+    }
+
     /// The next four numbers in [0, 1): of the sequence where it has so many dimensions, at random beyond.
     #[inline]
     pub fn four(&mut self) -> [f64; 4] {

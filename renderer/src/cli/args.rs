@@ -5,6 +5,7 @@ use crate::cases::Tier;
 use crate::render::Shard;
 use crate::scene::{Albedo, CameraKind, Scene, SceneError, word};
 use crate::spectrum::Wavelengths;
+use crate::sweep::PATHS;
 use crate::transport::Method;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -249,6 +250,29 @@ pub(super) enum BenchName {
     Anchors,
 }
 
+/// Flags of `airlight sweep`.
+#[derive(Debug, Args)]
+pub(super) struct SweepArgs {
+    /// Number of paths, 1 to 1e15; 1024 for each scene
+    #[arg(long, value_name = "N", value_parser = count, default_value = "1e6")]
+    pub paths: u64,
+    /// Seed of scenes and paths, 0 to 2^64 - 1
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub seed: u64,
+    /// Estimator
+    #[arg(long, value_name = "METHOD", default_value = "paths")]
+    pub method: MethodName,
+    /// Threads, 1 to 1024; the findings do not depend on it [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Trace one path of this scene instead, and say what the scene is
+    #[arg(long, value_name = "N", requires = "path")]
+    pub scene: Option<u64>,
+    /// Which path
+    #[arg(long, value_name = "K", requires = "scene", value_parser = clap::value_parser!(u64).range(..PATHS))]
+    pub path: Option<u64>,
+}
+
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum MethodName {
     Judge,
@@ -333,6 +357,17 @@ fn share(text: &str) -> Result<f64, String> {
     // Rounded as written, so that 7% is 0.07.
     let value = format!("{value:.12}").parse().unwrap_or(value);
     if (1e-5..=1.0).contains(&value) { Ok(value) } else { Err("0.001% to 100% is possible".into()) }
+}
+
+/// A whole number: `1000000` or `1e6`.
+fn count(text: &str) -> Result<u64, String> {
+    let value = text.parse::<f64>().map_err(|_| "say 1000000 or 1e6".to_string())?;
+    if (1.0..=1e15).contains(&value) && value.fract() == 0.0 {
+        // Exact: below 2^53.
+        Ok(value as u64)
+    } else {
+        Err("a whole number from 1 to 1e15 is possible".into())
+    }
 }
 
 /// A time: `30s`, `5m` or `1.5h`.

@@ -12,6 +12,7 @@ mod picture;
 mod progress;
 mod radiance;
 mod render;
+mod sweep;
 
 use crate::scene::SceneError;
 use clap::Parser;
@@ -29,6 +30,8 @@ enum Command {
     Radiance(args::RadianceArgs),
     /// Measure what a direction and a picture cost on skies that other renderers were timed on
     Bench(args::BenchArgs),
+    /// Trace paths through scenes drawn at random, and report any that is not finite, negative or endless
+    Sweep(args::SweepArgs),
 }
 
 /// What a command ends in, short of an error.
@@ -67,6 +70,7 @@ pub fn main() -> ExitCode {
         Command::Merge(args) => merge::run(&args),
         Command::Radiance(args) => radiance::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
     };
     match outcome.and_then(|outcome| output::finish().map(|()| outcome)) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

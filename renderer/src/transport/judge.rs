@@ -28,6 +28,7 @@ pub(super) fn trace<const L: usize>(
     let mut order = 0_u32;
     while problem.max_orders.is_none_or(|most| order < most) {
         order += 1;
+        sampler.go_to(2 * order);
         let ray = Ray::new(problem.shape, place, direction);
         let end = ray.segments(medium.bounds(), &mut segments);
         let track = Track { ray, segments: &segments, end };

@@ -4,6 +4,9 @@ use crate::atmosphere::Medium;
 use crate::geometry::{Ray, Segment};
 use crate::sampling::Sampler;
 
+/// An optical depth that lets nothing through, exp(-DARK) = 0: a level ray between planes would collide for ever.
+const DARK: f64 = 746.0;
+
 /// Transmittance at every wavelength along `segments` of `ray` as far as the
 /// distance `until_m`.
 ///
@@ -30,6 +33,9 @@ pub(super) fn transmittance<const L: usize>(
         let shell = &medium.shells()[layer];
         for (depth, minorant) in depth.iter_mut().zip(&shell.minorant) {
             *depth += minorant * (end_m - start_m);
+        }
+        if depth.iter().all(|&depth| depth > DARK) {
+            return [0.0; L];
         }
         let mut at = start_m;
         while ahead < shell.spread * (end_m - at) {

@@ -264,25 +264,34 @@ impl<const L: usize> Chord<'_, L> {
         let nodes = self.columns.altitudes.nodes();
         let (from, to) = (nodes[k], nodes[k + 1]);
         let start = k == self.lowest;
+        // Where a line turns just below the cell, the mean from there has a slope that rounding or a jump make as steep as
+        // one over that distance; the mean from the bottom of the cell has not.
+        let turned = k == self.lowest + 1 && self.perigee.0 > 0.0 && from - self.perigee.0 < to - from;
         let from = if start { from.max(self.perigee.0) } else { from };
         let height = to - from;
-        // Length on the line and height (ds/dh) / length, with ds/dh = (R + h) / s.
-        let end = |h: f64, k: usize| {
-            let s = self.node_distance(k);
-            let length = s - self.origin;
-            let rise = match self.columns.shape {
-                Shape::Flat => height * self.slant / length,
-                Shape::Sphere { .. } => height * (self.perigee.1 + (h - self.perigee.0)) / (s * length),
-            };
-            (length, if length > 0.0 { rise } else { 0.0 })
+        let low_length = if start { 0.0 } else { self.node_distance(k) - self.origin };
+        let skipped = if turned { low_length } else { 0.0 };
+        // Height (ds/dh) / length for a length that counts from the line's start or from the cell's bottom; ds/dh = (R + h) / s.
+        let factor = |h: f64, s: f64, length: f64| match self.columns.shape {
+            _ if length <= 0.0 => 0.0,
+            Shape::Flat => height * self.slant / length,
+            Shape::Sphere { .. } => height * (self.perigee.1 + (h - self.perigee.0)) / (s * length),
         };
-        let (low_length, low_factor) = if start { (0.0, 0.0) } else { end(from, k) };
-        let (high_length, high_factor) = end(to, k + 1);
+        let low_factor = if start || turned { 0.0 } else { factor(from, low_length + self.origin, low_length) };
+        let high_distance = self.node_distance(k + 1);
+        let high_length = high_distance - self.origin;
+        let high_factor = factor(to, high_distance, high_length - skipped);
         let per_height = if height > 0.0 { 1.0 / height } else { 0.0 };
-        Cell { k, start, from, per_height, low_length, low_factor, high_length, high_factor }
+        Cell { k, start, skipped, from, per_height, low_length, low_factor, high_length, high_factor }
     }
 
-    /// The mean extinction from the line's start by the weights of what the cell's ends have.
+    /// Optical depth below where the cell's means count from.
+    #[inline]
+    fn skipped(&self, cell: &Cell, j: usize) -> f64 {
+        if cell.skipped > 0.0 { self.rows.mean(cell.k, j) * cell.skipped } else { 0.0 }
+    }
+
+    /// The mean extinction from where the cell's means count, by the weights of what the cell's ends have.
     #[inline]
     fn weigh(&self, cell: &Cell, weights: [f64; 4], j: usize) -> f64 {
         let [at_low, at_high] = &self.columns.extinction[cell.k];
@@ -294,24 +303,32 @@ impl<const L: usize> Chord<'_, L> {
     /// Weights of the mean and of its derivative by the fraction t of a cell, for (low, high, extinction at either).
     #[inline]
     fn weights(cell: &Cell, t: f64) -> [[f64; 4]; 2] {
-        let [value, derivative] = if cell.start { from_start_weights(t) } else { between_weights(t) };
         let (a, b) = (cell.low_factor, cell.high_factor);
+        if cell.skipped > 0.0 {
+            // The mean from the cell's bottom up to its top is (high high_length - low skipped) / (high_length - skipped).
+            let share = 1.0 / (cell.high_length - cell.skipped);
+            return from_start_weights(t).map(|w| {
+                let high = (w[1] - b * w[3]) * share;
+                [-high * cell.skipped, high * cell.high_length, w[0], b * w[3]]
+            });
+        }
+        let both = if cell.start { from_start_weights(t) } else { between_weights(t) };
         // The slopes of the mean at the ends are factor (extinction - mean).
-        [value, derivative].map(|w| [w[0] - a * w[2], w[1] - b * w[3], a * w[2], b * w[3]])
+        both.map(|w| [w[0] - a * w[2], w[1] - b * w[3], a * w[2], b * w[3]])
     }
 
     /// Optical depths from the line's start to a distance from the perigee, where the altitude is `altitude`.
     #[inline]
     fn depths(&self, cell: &Cell, altitude: f64, distance: f64) -> [f64; L] {
-        let length = (distance - self.origin).max(0.0);
+        let length = (distance - self.origin - cell.skipped).max(0.0);
         let [value, _] = Self::weights(cell, cell.fraction(altitude));
-        std::array::from_fn(|j| length * self.weigh(cell, value, j))
+        std::array::from_fn(|j| self.skipped(cell, j) + length * self.weigh(cell, value, j))
     }
 
     /// As [`Chord::depths`], with the slopes.
     #[inline]
     fn point_of_line(&self, cell: &Cell, altitude: f64, distance: f64) -> Point<L> {
-        let length = (distance - self.origin).max(0.0);
+        let length = (distance - self.origin - cell.skipped).max(0.0);
         let [value, derivative] = Self::weights(cell, cell.fraction(altitude));
         // dh/ds = s / (R + h)
         let by_distance = cell.per_height
@@ -322,7 +339,7 @@ impl<const L: usize> Chord<'_, L> {
         let mut point = Point { depth: [0.0; L], slope: [0.0; L] };
         for j in 0..L {
             let mean = self.weigh(cell, value, j);
-            point.depth[j] = mean * length;
+            point.depth[j] = self.skipped(cell, j) + mean * length;
             point.slope[j] = mean + self.weigh(cell, derivative, j) * length * by_distance;
         }
         point
@@ -408,13 +425,15 @@ struct Cell {
     k: usize,
     /// Whether the line starts in it.
     start: bool,
+    /// Distance from the line's start to where the cell's means count from: 0, or its bottom.
+    skipped: f64,
     /// Its lower end in m, and 1 / height.
     from: f64,
     per_height: f64,
     /// Distances of its ends from the line's start.
     low_length: f64,
     high_length: f64,
-    /// height (ds/dh) / length: what turns extinction - mean into the derivative of the mean by the fraction of the cell.
+    /// height (ds/dh) / length, the length from where the means count: what turns extinction - mean into the derivative of the mean by the fraction of the cell.
     low_factor: f64,
     high_factor: f64,
 }

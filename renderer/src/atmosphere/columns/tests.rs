@@ -154,3 +154,32 @@ fn tables_hold_for_planets_of_any_size() {
         }
     }
 }
+
+#[test]
+fn lines_that_turn_just_below_a_node_have_the_depths_of_the_quadrature() {
+    // From above the turn, where the columns count back to it: by rounding, and by more, below a jump and below other nodes.
+    let medium = medium();
+    for radius_m in [1e5, RADIUS, 1e9] {
+        let shape = Shape::Sphere { radius_m };
+        let columns = Columns::new(&medium, shape, Tolerance::RENDER);
+        let nodes = columns.altitudes.nodes();
+        for &node in nodes[1..nodes.len() - 1].iter().step_by(5).chain(&[2e3]) {
+            for below in [1e-12, 1e-9, 2e-6, 1e-3, 0.1, 3.0, 20.0] {
+                for above in [1e-3, 1.0, 30.0, 300.0] {
+                    let (p, h) = (node.next_down().min(node - below), node + above);
+                    let sine = (radius_m + p) / (radius_m + h);
+                    let cosine = -((h - p) * (2.0 * radius_m + h + p)).sqrt() / (radius_m + h);
+                    let direction = DVec3::new(sine, 0.0, cosine);
+                    let chord = columns.chord(Place::above(h), direction).expect("meets the air");
+                    let exact = medium.optical_depth(shape, Place::above(h), direction);
+                    for (table, exact) in chord.total().into_iter().zip(exact) {
+                        assert!(
+                            close(table, exact),
+                            "{radius_m}, {below} below {node}, {above} above: {table} for {exact}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
