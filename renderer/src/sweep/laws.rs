@@ -1,4 +1,4 @@
-//! Laws of single scattering that hold whatever the scene, without noise worth mentioning.
+//! Laws of single scattering that hold whatever the scene; what the noise of an estimate explains is not counted.
 //!
 //! *Empty space changes nothing.* On one line of sight a radiance is the same from everywhere above the air, and from
 //! just below the top it lacks what the last metre of air adds: observers a metre below, at and a metre above the top agree.
@@ -22,8 +22,15 @@ use tables::units::KM;
 /// Largest relative departure from a law that interpolation and quadrature may make.
 pub const LAW: f64 = 1e-3;
 
-/// Points of a Sobol sequence that a radiance is the mean of, for each wavelength.
-const POINTS: u32 = 4096;
+/// Independent Sobol sequences that a radiance is the mean of.
+const REPLICATES: u32 = 8;
+
+/// Standard errors by which the noise of an estimate may miss: chance does so in less than one of 1e5, for the tails of
+/// eight sequences are Student's.
+const NOISE: f64 = 10.0;
+
+/// Points of each sequence, for each wavelength.
+const POINTS: u32 = 1024;
 
 /// Cells of a sum without tables, on either side of the foot.
 const CELLS: u32 = 4096;
@@ -102,23 +109,33 @@ fn check<const L: usize>(scene: Scene, seed: u64, number: u64) -> Laws {
     laws
 }
 
-/// Singly scattered radiance in sr^-1.
-fn single<const L: usize>(problem: &Problem<'_, L>, from: Place, direction: DVec3) -> [f64; L] {
-    let mut mean = [0.0; L];
+/// Singly scattered radiance in sr^-1, and its standard error.
+fn single<const L: usize>(problem: &Problem<'_, L>, from: Place, direction: DVec3) -> [[f64; L]; 2] {
     let points = POINTS * L as u32;
-    for point in 0..points {
-        let mut sampler = Sampler::sobol(0, 0, 0, point);
-        let radiance = transport::radiance(Method::Paths, problem, from, direction, &mut sampler);
-        for (mean, radiance) in mean.iter_mut().zip(radiance) {
-            *mean += radiance / f64::from(points);
+    let (mut sum, mut squares) = ([0.0; L], [0.0; L]);
+    for replicate in 0..REPLICATES {
+        let mut mean = [0.0; L];
+        for point in 0..points {
+            let mut sampler = Sampler::sobol(0, 0, u64::from(replicate), point);
+            let radiance = transport::radiance(Method::Paths, problem, from, direction, &mut sampler);
+            for (mean, radiance) in mean.iter_mut().zip(radiance) {
+                *mean += radiance / f64::from(points);
+            }
+        }
+        for j in 0..L {
+            sum[j] += mean[j];
+            squares[j] += mean[j] * mean[j];
         }
     }
-    mean
+    let n = f64::from(REPLICATES);
+    let mean = sum.map(|sum| sum / n);
+    let error = std::array::from_fn(|j| ((squares[j] / n - mean[j] * mean[j]).max(0.0) / (n - 1.0)).sqrt());
+    [mean, error]
 }
 
-/// Largest of |a - b| at a wavelength in shares of `whole`.
-fn apart<const L: usize>(a: &[f64; L], b: &[f64; L], whole: &[f64; L]) -> f64 {
-    let relative = |j: usize| if a[j] == b[j] { 0.0 } else { (a[j] - b[j]).abs() / whole[j] };
+/// Largest at a wavelength of what |a - b| exceeds `noise` by, in shares of `whole`.
+fn apart<const L: usize>(a: &[f64; L], b: &[f64; L], noise: &[f64; L], whole: &[f64; L]) -> f64 {
+    let relative = |j: usize| if a[j] == b[j] { 0.0 } else { ((a[j] - b[j]).abs() - noise[j]).max(0.0) / whole[j] };
     // Not a number is the largest departure.
     (0..L).map(relative).fold(0.0, |most, r| if r <= most { most } else { r })
 }
@@ -138,10 +155,12 @@ fn across_top<const L: usize>(world: &World<L>, scene: &Scene, side: f64, height
     let problem = Problem { max_orders: Some(1), ..world.problem(&scene, sun.as_ref()) };
     let at = |above: f64| {
         let place = Place::above(top).advance(shape, direction, above / direction.z);
-        single(&problem, if above == 0.0 { Place::above(top) } else { place }, direction)
+        single(&problem, if above == 0.0 { Place::above(top) } else { place }, direction)[0]
     };
     let [below, edge, above] = [-1.0, 0.0, 1.0].map(at);
-    apart(&below, &edge, &edge).max(apart(&above, &edge, &edge))
+    // All three have the same random numbers, so noise does not part them.
+    let none = [0.0; L];
+    apart(&below, &edge, &none, &edge).max(apart(&above, &edge, &none, &edge))
 }
 
 /// Departures from the law of the horizon and from the sum.
@@ -162,9 +181,11 @@ fn across_horizon<const L: usize>(world: &World<L>, scene: &Scene, altitude_m: f
     let (near, far) = (walk.sum(0.0, foot), walk.sum(foot, end));
     let whole = std::array::from_fn(|j| near[j] + far[j]);
     let problem = Problem { max_orders: Some(1), ..world.problem(scene, Some(&sun)) };
-    let [above, below] = [upper, lower].map(|direction| single(&problem, place, direction));
+    let [[above, error], [below, error_below]] = [upper, lower].map(|direction| single(&problem, place, direction));
     let joined = std::array::from_fn(|j| below[j] + far[j]);
-    [apart(&above, &joined, &whole), apart(&above, &whole, &whole)]
+    let noise = error.map(|error| NOISE * error);
+    let both = std::array::from_fn(|j| NOISE * error[j].hypot(error_below[j]));
+    [apart(&above, &joined, &both, &whole), apart(&above, &whole, &noise, &whole)]
 }
 
 /// A line of sight without tables.
