@@ -285,19 +285,12 @@ impl<const L: usize> Chord<'_, L> {
         Cell { k, start, skipped, from, per_height, low_length, low_factor, high_length, high_factor }
     }
 
-    /// Optical depth below where the cell's means count from.
-    #[inline]
-    fn skipped(&self, cell: &Cell, j: usize) -> f64 {
-        if cell.skipped > 0.0 { self.rows.mean(cell.k, j) * cell.skipped } else { 0.0 }
-    }
-
-    /// The mean extinction from where the cell's means count, by the weights of what the cell's ends have.
-    #[inline]
-    fn weigh(&self, cell: &Cell, weights: [f64; 4], j: usize) -> f64 {
+    /// What the ends of a cell have at wavelength `j`: means, and extinctions.
+    #[inline(always)]
+    fn ends_of(&self, cell: &Cell, j: usize) -> [f64; 4] {
         let [at_low, at_high] = &self.columns.extinction[cell.k];
         let low = if cell.start { self.rows.start(j) } else { self.rows.mean(cell.k, j) };
-        let high = self.rows.mean(cell.k + 1, j);
-        weights[0] * low + weights[1] * high + (weights[2] * at_low[j] + weights[3] * at_high[j])
+        [low, self.rows.mean(cell.k + 1, j), at_low[j], at_high[j]]
     }
 
     /// Weights of the mean and of its derivative by the fraction t of a cell, for (low, high, extinction at either).
@@ -322,7 +315,12 @@ impl<const L: usize> Chord<'_, L> {
     fn depths(&self, cell: &Cell, altitude: f64, distance: f64) -> [f64; L] {
         let length = (distance - self.origin - cell.skipped).max(0.0);
         let [value, _] = Self::weights(cell, cell.fraction(altitude));
-        std::array::from_fn(|j| self.skipped(cell, j) + length * self.weigh(cell, value, j))
+        let mut depth = [0.0; L];
+        for (j, depth) in depth.iter_mut().enumerate() {
+            let ends = self.ends_of(cell, j);
+            *depth = ends[0] * cell.skipped + length * dot(value, ends);
+        }
+        depth
     }
 
     /// As [`Chord::depths`], with the slopes.
@@ -338,9 +336,10 @@ impl<const L: usize> Chord<'_, L> {
             };
         let mut point = Point { depth: [0.0; L], slope: [0.0; L] };
         for j in 0..L {
-            let mean = self.weigh(cell, value, j);
-            point.depth[j] = self.skipped(cell, j) + mean * length;
-            point.slope[j] = mean + self.weigh(cell, derivative, j) * length * by_distance;
+            let ends = self.ends_of(cell, j);
+            let mean = dot(value, ends);
+            point.depth[j] = ends[0] * cell.skipped + mean * length;
+            point.slope[j] = mean + dot(derivative, ends) * length * by_distance;
         }
         point
     }
@@ -415,6 +414,11 @@ impl<const L: usize> Chord<'_, L> {
         }
         (s, point(s))
     }
+}
+
+#[inline(always)]
+fn dot(a: [f64; 4], b: [f64; 4]) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
 }
 
 /// How exactly a depth is met, as a share of that of the cell: the density of what is drawn is off by about as much.
