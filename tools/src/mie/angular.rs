@@ -1,7 +1,7 @@
 //! The angular functions pi_n = P_n^1(mu) / sin(theta) and tau_n = d P_n^1(mu) / d theta, mu = cos(theta).
 
 use super::MieError;
-use pulp::Simd;
+use super::instructions::Vectors;
 
 /// Angles of one block of a table: a whole number of tiles of every instruction set.
 const WIDTH: usize = 24;
@@ -54,10 +54,15 @@ pub struct AngularTable {
     cosines: Vec<f64>,
     terms: usize,
     /// pi_n + tau_n: of [`WIDTH`] angles after the other, for each order n = 1, 2, ... in turn those of the block.
-    plus: Vec<f64>,
+    plus: Vec<Row>,
     /// pi_n - tau_n, the same.
-    minus: Vec<f64>,
+    minus: Vec<Row>,
 }
+
+/// One order's functions at the angles of a block, where no vector crosses a line of the cache.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+struct Row([f64; WIDTH]);
 
 impl AngularTable {
     /// The functions of the orders 1 ..= `terms` at the angles with these cosines.
@@ -65,16 +70,15 @@ impl AngularTable {
     /// # Errors
     /// [`MieError::Cosine`] for a cosine outside -1..=1.
     pub fn new(cosines: &[f64], terms: usize) -> Result<Self, MieError> {
-        // A row too many, so that rows can begin anywhere in a block.
-        let length = cosines.len().next_multiple_of(WIDTH) * terms + WIDTH;
-        let (mut plus, mut minus) = (vec![0.0; length], vec![0.0; length]);
+        let length = cosines.len().div_ceil(WIDTH) * terms;
+        let (mut plus, mut minus) = (vec![Row([0.0; WIDTH]); length], vec![Row([0.0; WIDTH]); length]);
         for (i, &cosine) in cosines.iter().enumerate() {
             let mut functions = Functions::new(cosine)?;
-            let first = i / WIDTH * WIDTH * terms + i % WIDTH;
-            for n in 0..terms {
+            let block = i / WIDTH * terms..(i / WIDTH + 1) * terms;
+            for (plus, minus) in plus[block.clone()].iter_mut().zip(&mut minus[block]) {
                 let (pi, tau) = functions.advance();
-                plus[first + n * WIDTH] = pi + tau;
-                minus[first + n * WIDTH] = pi - tau;
+                plus.0[i % WIDTH] = pi + tau;
+                minus.0[i % WIDTH] = pi - tau;
             }
         }
         Ok(Self { cosines: cosines.to_vec(), terms, plus, minus })
@@ -128,7 +132,7 @@ impl Matrix {
     /// Adds the spheres of the first lanes of a vector, as many as there are weights. `plus` and `minus` hold, for n = 1, 2, ... `count`, the real
     /// parts of (2n + 1) / (n (n + 1)) (a_n + b_n), or of a_n - b_n, in all lanes, then the imaginary parts.
     #[inline(always)]
-    pub(super) fn add<S: Simd>(
+    pub(super) fn add<S: Vectors>(
         &mut self,
         simd: S,
         table: &AngularTable,
@@ -138,8 +142,8 @@ impl Matrix {
     ) {
         // So that the accumulators fit into 32 or 16 registers.
         match S::F64_LANES {
-            8 => self.add_by::<S, 4, 3>(simd, table, (plus, minus), count, weights),
-            4 => self.add_by::<S, 2, 3>(simd, table, (plus, minus), count, weights),
+            8 => self.add_by::<S, 4, 16, 3>(simd, table, (plus, minus), count, weights),
+            4 => self.add_by::<S, 2, 8, 2>(simd, table, (plus, minus), count, weights),
             _ => self.add_plain(table, (plus, minus), count, weights[0]),
         }
     }
@@ -147,7 +151,7 @@ impl Matrix {
     /// As [`Matrix::add`], of one sphere.
     fn add_plain(&mut self, table: &AngularTable, (plus, minus): (&[f64], &[f64]), count: usize, weight: f64) {
         for first in (0..self.parts[0].len()).step_by(WIDTH) {
-            let start = first * table.terms;
+            let start = first / WIDTH * table.terms;
             let [p, q] = sums_plain(&table.plus[start..], plus, count);
             let [r, s] = sums_plain(&table.minus[start..], minus, count);
             for j in 0..WIDTH {
@@ -164,9 +168,10 @@ impl Matrix {
         }
     }
 
-    /// As [`Matrix::add`], by tiles of so many spheres and vectors of angles.
+    /// As [`Matrix::add`], by tiles of so many vectors of angles and of half a vector of `SPHERES` spheres, which have
+    /// `PAIRS` = 4 `SPHERES` coefficients of each order.
     #[inline(always)]
-    fn add_by<S: Simd, const SPHERES: usize, const VECTORS: usize>(
+    fn add_by<S: Vectors, const SPHERES: usize, const PAIRS: usize, const VECTORS: usize>(
         &mut self,
         simd: S,
         table: &AngularTable,
@@ -174,72 +179,109 @@ impl Matrix {
         count: usize,
         weights: &[f64],
     ) {
-        let lanes = S::F64_LANES;
-        let tile = VECTORS * lanes;
-        let block = WIDTH * table.terms;
+        let mut all = [0.0; PAIRS];
+        all[..weights.len()].copy_from_slice(weights);
+        let (plus, minus) = (&plus.as_chunks::<PAIRS>().0[..count], &minus.as_chunks::<PAIRS>().0[..count]);
+        let tile = VECTORS * S::F64_LANES;
         for first in (0..table.cosines.len()).step_by(tile) {
-            let start = first / WIDTH * block + first % WIDTH;
-            for sphere in (0..weights.len()).step_by(SPHERES) {
-                let ahead = sums::<S, SPHERES, VECTORS>(simd, &table.plus[start..], &plus[sphere..], count);
-                let back = sums::<S, SPHERES, VECTORS>(simd, &table.minus[start..], &minus[sphere..], count);
-                for (i, &weight) in weights[sphere..].iter().enumerate().take(SPHERES) {
-                    let weight = simd.splat_f64s(weight);
+            let start = first / WIDTH * table.terms;
+            let rows = [&table.plus[start..start + count], &table.minus[start..start + count]];
+            let tile = Tile { simd, rows, from: first % WIDTH };
+            let [p, q, r, s] = &mut self.parts;
+            let mut parts = [
+                &mut S::as_mut_simd_f64s(&mut p[first..]).0[..VECTORS],
+                &mut S::as_mut_simd_f64s(&mut q[first..]).0[..VECTORS],
+                &mut S::as_mut_simd_f64s(&mut r[first..]).0[..VECTORS],
+                &mut S::as_mut_simd_f64s(&mut s[first..]).0[..VECTORS],
+            ];
+            let coefficients = [plus, minus];
+            let two = weights.len() > SPHERES;
+            if table.cosines.len() - first <= 2 * S::F64_LANES {
+                tile.add::<SPHERES, PAIRS, 2, false>(coefficients, &all, &mut parts);
+                if two {
+                    tile.add::<SPHERES, PAIRS, 2, true>(coefficients, &all, &mut parts);
+                }
+            } else {
+                tile.add::<SPHERES, PAIRS, VECTORS, false>(coefficients, &all, &mut parts);
+                if two {
+                    tile.add::<SPHERES, PAIRS, VECTORS, true>(coefficients, &all, &mut parts);
+                }
+            }
+        }
+    }
+}
+
+/// The functions pi_n + tau_n and pi_n - tau_n of the angles of a block from one of them on.
+struct Tile<'a, S> {
+    simd: S,
+    rows: [&'a [Row]; 2],
+    from: usize,
+}
+
+impl<S: Vectors> Tile<'_, S> {
+    /// Adds to the parts of a matrix the spheres of the first or the second half of a vector.
+    #[inline(always)]
+    fn add<const SPHERES: usize, const PAIRS: usize, const VECTORS: usize, const SECOND: bool>(
+        &self,
+        coefficients: [&[[f64; PAIRS]]; 2],
+        weights: &[f64; PAIRS],
+        parts: &mut [&mut [S::f64s]; 4],
+    ) {
+        let simd = self.simd;
+        let ahead = self.sums::<SPHERES, PAIRS, VECTORS, SECOND>(self.rows[0], coefficients[0]);
+        let back = self.sums::<SPHERES, PAIRS, VECTORS, SECOND>(self.rows[1], coefficients[1]);
+        for i in 0..SPHERES {
+            let weight = simd.splat_f64s(weights[if SECOND { SPHERES + i } else { i }]);
+            for v in 0..VECTORS {
+                let [p, q] = [ahead[i][0][v], ahead[i][1][v]];
+                let [r, s] = [back[i][0][v], back[i][1][v]];
+                let products = [
+                    simd.mul_add_e_f64s(p, p, simd.mul_f64s(q, q)),
+                    simd.mul_add_e_f64s(r, r, simd.mul_f64s(s, s)),
+                    simd.mul_add_e_f64s(p, r, simd.mul_f64s(q, s)),
+                    simd.mul_sub(q, r, simd.mul_f64s(p, s)),
+                ];
+                for k in 0..4 {
+                    parts[k][v] = simd.mul_add_e_f64s(weight, products[k], parts[k][v]);
+                }
+            }
+        }
+    }
+
+    /// The sums over the orders of functions times coefficients: of each sphere and vector of angles the real and the
+    /// imaginary part. An order's coefficients are the real parts of all spheres, then the imaginary parts.
+    #[inline(always)]
+    fn sums<const SPHERES: usize, const PAIRS: usize, const VECTORS: usize, const SECOND: bool>(
+        &self,
+        functions: &[Row],
+        coefficients: &[[f64; PAIRS]],
+    ) -> [[[S::f64s; VECTORS]; 2]; SPHERES] {
+        let first = if SECOND { SPHERES } else { 0 };
+        let mut sums = [[[self.simd.splat_f64s(0.0); VECTORS]; 2]; SPHERES];
+        for (row, both) in functions.iter().zip(coefficients) {
+            let (row, _) = S::as_simd_f64s(&row.0[self.from..self.from + VECTORS * S::F64_LANES]);
+            for i in 0..SPHERES {
+                for part in 0..2 {
+                    let coefficient = self.simd.splat_f64s(both[part * 2 * SPHERES + first + i]);
                     for v in 0..VECTORS {
-                        let [p, q] = [ahead[i][0][v], ahead[i][1][v]];
-                        let [r, s] = [back[i][0][v], back[i][1][v]];
-                        let products = [
-                            simd.mul_add_e_f64s(p, p, simd.mul_f64s(q, q)),
-                            simd.mul_add_e_f64s(r, r, simd.mul_f64s(s, s)),
-                            simd.mul_add_e_f64s(p, r, simd.mul_f64s(q, s)),
-                            simd.sub_f64s(simd.mul_f64s(q, r), simd.mul_f64s(p, s)),
-                        ];
-                        for (part, product) in self.parts.iter_mut().zip(products) {
-                            let part = &mut S::as_mut_simd_f64s(&mut part[first..]).0[v];
-                            *part = simd.mul_add_e_f64s(weight, product, *part);
-                        }
+                        sums[i][part][v] = self.simd.mul_add_e_f64s(coefficient, row[v], sums[i][part][v]);
                     }
                 }
             }
         }
+        sums
     }
-}
-
-/// The sums over n = 1 ..= `count` of functions times coefficients, for `SPHERES` spheres and a tile of angles: of each
-/// sphere and vector of angles the real and the imaginary part.
-#[inline(always)]
-fn sums<S: Simd, const SPHERES: usize, const VECTORS: usize>(
-    simd: S,
-    functions: &[f64],
-    coefficients: &[f64],
-    count: usize,
-) -> [[[S::f64s; VECTORS]; 2]; SPHERES] {
-    let lanes = S::F64_LANES;
-    let mut sums = [[[simd.splat_f64s(0.0); VECTORS]; 2]; SPHERES];
-    for (row, both) in functions.as_chunks::<WIDTH>().0.iter().zip(coefficients.chunks(2 * lanes)).take(count) {
-        let (row, _) = S::as_simd_f64s(&row[..VECTORS * lanes]);
-        let parts = [&both[..SPHERES], &both[lanes..lanes + SPHERES]];
-        for i in 0..SPHERES {
-            for part in 0..2 {
-                let coefficient = simd.splat_f64s(parts[part][i]);
-                for v in 0..VECTORS {
-                    sums[i][part][v] = simd.mul_add_e_f64s(coefficient, row[v], sums[i][part][v]);
-                }
-            }
-        }
-    }
-    sums
 }
 
 /// The same for one sphere and a whole block of angles, by plain loops over arrays, four orders at a time: what
 /// compilers turn into the vector instructions that every processor has.
-fn sums_plain(functions: &[f64], coefficients: &[f64], count: usize) -> [[f64; WIDTH]; 2] {
+fn sums_plain(functions: &[Row], coefficients: &[f64], count: usize) -> [[f64; WIDTH]; 2] {
     const RUN: usize = 4;
-    let (rows, pairs) = (functions.as_chunks::<WIDTH>().0, coefficients.as_chunks::<2>().0);
-    let (rows, pairs) = (&rows[..count], &pairs[..count]);
+    let (rows, pairs) = (&functions[..count], &coefficients.as_chunks::<2>().0[..count]);
     let mut sums = [[0.0; WIDTH]; 2];
     let (runs, rest) = rows.as_chunks::<RUN>();
     let (pair_runs, pair_rest) = pairs.as_chunks::<RUN>();
-    for ([f0, f1, f2, f3], c) in runs.iter().zip(pair_runs) {
+    for ([Row(f0), Row(f1), Row(f2), Row(f3)], c) in runs.iter().zip(pair_runs) {
         for part in 0..2 {
             let [c0, c1, c2, c3] = c.map(|pair| pair[part]);
             for (j, sum) in sums[part].iter_mut().enumerate() {
@@ -249,7 +291,7 @@ fn sums_plain(functions: &[f64], coefficients: &[f64], count: usize) -> [[f64; W
     }
     for (row, c) in rest.iter().zip(pair_rest) {
         for part in 0..2 {
-            for (sum, f) in sums[part].iter_mut().zip(row) {
+            for (sum, f) in sums[part].iter_mut().zip(&row.0) {
                 *sum += c[part] * f;
             }
         }

@@ -4,6 +4,7 @@
 //! The formulas are those of [`crate::mie`]; this file says only how they are laid out. Written once over
 //! [`pulp::Simd`], compiled for each instruction set of [`Instructions`](super::Instructions).
 
+use super::instructions::Vectors;
 use super::{RefractiveIndex, sphere, terms};
 use num_complex::Complex64;
 use pulp::Simd;
@@ -94,7 +95,7 @@ fn store<S: Simd>(vector: S::f64s, lanes: &mut [f64; LANES]) {
 /// do not fall. Missing spheres are taken as more of the last. With `keep`, fills [`Scratch::plus`] and
 /// [`Scratch::minus`] of each vector up to the number of terms that is returned.
 #[inline(always)]
-pub(super) fn solve<S: Simd, const VECTORS: usize>(
+pub(super) fn solve<S: Vectors, const VECTORS: usize>(
     simd: S,
     m: RefractiveIndex,
     x: &[f64],
@@ -135,7 +136,7 @@ pub(super) fn solve<S: Simd, const VECTORS: usize>(
 
 /// R_n(z) of each vector for n = 1 ..= `last`, downwards.
 #[inline(always)]
-fn inside<S: Simd, const VECTORS: usize>(
+fn inside<S: Vectors, const VECTORS: usize>(
     simd: S,
     m: RefractiveIndex,
     sizes: &[[f64; LANES]; VECTORS],
@@ -171,7 +172,7 @@ fn inside<S: Simd, const VECTORS: usize>(
 
 /// From R_(n+1) to R_n = 1 / w, w = (2n + 1)/z - R_(n+1).
 #[inline(always)]
-fn step_inside<S: Simd, const VECTORS: usize>(
+fn step_inside<S: Vectors, const VECTORS: usize>(
     simd: S,
     n: usize,
     inverses: &[Complexes<S>; VECTORS],
@@ -179,19 +180,19 @@ fn step_inside<S: Simd, const VECTORS: usize>(
 ) {
     let odd = simd.splat_f64s((2 * n + 1) as f64);
     // A zero of w gives a number so large that the next step forgets it.
-    let (one, never) = (simd.splat_f64s(1.0), simd.splat_f64s(1e-150));
+    let never = simd.splat_f64s(1e-150);
     for v in 0..VECTORS {
-        let re = simd.add_f64s(simd.sub_f64s(simd.mul_f64s(odd, inverses[v].re), ratios[v].re), never);
+        let re = simd.add_f64s(simd.mul_sub(odd, inverses[v].re, ratios[v].re), never);
         // Of -w, so that no sign needs to change.
-        let im = simd.sub_f64s(ratios[v].im, simd.mul_f64s(odd, inverses[v].im));
-        let weight = simd.div_f64s(one, simd.mul_add_e_f64s(re, re, simd.mul_f64s(im, im)));
+        let im = simd.sub_mul(ratios[v].im, odd, inverses[v].im);
+        let weight = simd.reciprocal(simd.mul_add_e_f64s(re, re, simd.mul_f64s(im, im)));
         ratios[v] = Complexes { re: simd.mul_f64s(re, weight), im: simd.mul_f64s(im, weight) };
     }
 }
 
 /// psi_n(x) / psi_(n-1)(x) of each vector, from the lowest n that a sphere needs up to `last`, downwards.
 #[inline(always)]
-fn outside<S: Simd, const VECTORS: usize>(
+fn outside<S: Vectors, const VECTORS: usize>(
     simd: S,
     sizes: &[[f64; LANES]; VECTORS],
     largest: f64,
@@ -218,15 +219,15 @@ fn outside<S: Simd, const VECTORS: usize>(
 
 /// From psi_(n+1) / psi_n to psi_n / psi_(n-1) = 1 / ((2n + 1)/x - psi_(n+1) / psi_n).
 #[inline(always)]
-fn step_outside<S: Simd, const VECTORS: usize>(
+fn step_outside<S: Vectors, const VECTORS: usize>(
     simd: S,
     n: usize,
     inverses: &[S::f64s; VECTORS],
     ratios: &mut [S::f64s; VECTORS],
 ) {
-    let (odd, one) = (simd.splat_f64s((2 * n + 1) as f64), simd.splat_f64s(1.0));
+    let odd = simd.splat_f64s((2 * n + 1) as f64);
     for v in 0..VECTORS {
-        ratios[v] = simd.div_f64s(one, simd.sub_f64s(simd.mul_f64s(odd, inverses[v]), ratios[v]));
+        ratios[v] = simd.reciprocal(simd.mul_sub(odd, inverses[v], ratios[v]));
     }
 }
 
@@ -255,7 +256,7 @@ struct Shared<S: Simd> {
     /// Order up to which psi goes upwards, and number of terms.
     upward: S::f64s,
     count: S::f64s,
-    index: Complexes<S>,
+    minus_index: Complexes<S>,
     inverse_index: Complexes<S>,
     /// (1/m^2 - 1) / x.
     contrast: Complexes<S>,
@@ -272,7 +273,7 @@ struct Accumulated<S: Simd> {
 
 /// a_n and b_n of one vector for n = 1 ..= `count`, and their sums.
 #[inline(always)]
-fn coefficients<S: Simd>(
+fn coefficients<S: Vectors>(
     simd: S,
     m: RefractiveIndex,
     sizes: &[f64; LANES],
@@ -295,7 +296,7 @@ fn coefficients<S: Simd>(
         inverse_x,
         upward: load::<S>(&last_upward),
         count: load::<S>(&counts),
-        index: Complexes::splat(simd, m.to_complex()),
+        minus_index: Complexes::splat(simd, -m.to_complex()),
         inverse_index: Complexes::splat(simd, m.to_complex().inv()),
         contrast: Complexes {
             re: simd.mul_f64s(simd.splat_f64s(contrast.re), inverse_x),
@@ -362,7 +363,7 @@ fn coefficients<S: Simd>(
 
 /// The order n. `MIXED` where some spheres have gone over to ratios, or have ended.
 #[inline(always)]
-fn advance<S: Simd, const MIXED: bool>(
+fn advance<S: Vectors, const MIXED: bool>(
     simd: S,
     n: usize,
     order: &[f64; 3],
@@ -376,44 +377,43 @@ fn advance<S: Simd, const MIXED: bool>(
     let odd = simd.splat_f64s(order[0]);
     let step = simd.mul_f64s(odd, shared.inverse_x);
     let (psi, chi) = (state.psi[1], state.chi[1]);
-    let mut next_psi = simd.sub_f64s(simd.mul_f64s(step, psi), state.psi[0]);
+    let mut next_psi = simd.mul_sub(step, psi, state.psi[0]);
     if MIXED {
         let upward = simd.less_than_or_equal_f64s(simd.splat_f64s((n + 1) as f64), shared.upward);
         next_psi = simd.select_f64s(upward, next_psi, simd.mul_f64s(ratios.outside[at], psi));
     }
-    let next_chi = simd.sub_f64s(simd.mul_f64s(step, chi), state.chi[0]);
+    let next_chi = simd.mul_sub(step, chi, state.chi[0]);
 
     let next = simd.splat_f64s((n + 1) as f64);
-    let (c, index, inverse) = (shared.contrast, shared.index, shared.inverse_index);
+    let (c, minus, inverse) = (shared.contrast, shared.minus_index, shared.inverse_index);
     // C of a_n: (n + 1) / x (1/m^2 - 1) - R_(n+1) / m.
-    let minus_re = simd.sub_f64s(simd.mul_f64s(inverse.im, inside.im), simd.mul_f64s(inverse.re, inside.re));
-    let im = simd.mul_add_e_f64s(inverse.re, inside.im, simd.mul_f64s(inverse.im, inside.re));
+    let [re, im] = [simd.mul_f64s(next, c.re), simd.mul_f64s(next, c.im)];
     let of_a = Complexes::<S> {
-        re: simd.mul_add_e_f64s(next, c.re, minus_re),
-        im: simd.sub_f64s(simd.mul_f64s(next, c.im), im),
+        re: simd.sub_mul(simd.mul_add_e_f64s(inverse.im, inside.im, re), inverse.re, inside.re),
+        im: simd.sub_mul(simd.sub_mul(im, inverse.re, inside.im), inverse.im, inside.re),
     };
     // C of b_n: -m R_(n+1).
     let of_b = Complexes::<S> {
-        re: simd.sub_f64s(simd.mul_f64s(index.im, inside.im), simd.mul_f64s(index.re, inside.re)),
-        im: simd.neg_f64s(simd.mul_add_e_f64s(index.re, inside.im, simd.mul_f64s(index.im, inside.re))),
+        re: simd.mul_sub(minus.re, inside.re, simd.mul_f64s(minus.im, inside.im)),
+        im: simd.mul_add_e_f64s(minus.re, inside.im, simd.mul_f64s(minus.im, inside.re)),
     };
     let (above_a, below_a, square_a) = fraction(simd, of_a, [psi, next_psi], [chi, next_chi]);
     let (above_b, below_b, square_b) = fraction(simd, of_b, [psi, next_psi], [chi, next_chi]);
     // One division for both.
-    let both = simd.div_f64s(simd.splat_f64s(1.0), simd.mul_f64s(square_a, square_b));
-    let (mut a, scattered_a, absorbed_a) = finish(simd, of_a, above_a, below_a, simd.mul_f64s(both, square_b));
-    let (mut b, scattered_b, absorbed_b) = finish(simd, of_b, above_b, below_b, simd.mul_f64s(both, square_a));
+    let both = simd.reciprocal(simd.mul_f64s(square_a, square_b));
+    let (mut a, scattered_a, lost_a) = finish(simd, of_a, above_a, below_a, simd.mul_f64s(both, square_b));
+    let (mut b, scattered_b, lost_b) = finish(simd, of_b, above_b, below_b, simd.mul_f64s(both, square_a));
     let mut scattered = simd.add_f64s(scattered_a, scattered_b);
-    let mut absorbed = simd.add_f64s(absorbed_a, absorbed_b);
+    let mut lost = simd.add_f64s(lost_a, lost_b);
     if MIXED {
         let there = simd.less_than_or_equal_f64s(simd.splat_f64s(n as f64), shared.count);
         let zero = simd.splat_f64s(0.0);
-        for value in [&mut a.re, &mut a.im, &mut b.re, &mut b.im, &mut scattered, &mut absorbed] {
+        for value in [&mut a.re, &mut a.im, &mut b.re, &mut b.im, &mut scattered, &mut lost] {
             *value = simd.select_f64s(there, *value, zero);
         }
     }
     sum.scattering = simd.mul_add_e_f64s(odd, scattered, sum.scattering);
-    sum.absorption = simd.mul_add_e_f64s(odd, absorbed, sum.absorption);
+    sum.absorption = simd.sub_mul(sum.absorption, odd, lost);
     let zero = simd.splat_f64s(0.0);
     let same = a.dot_add(simd, b, zero);
     let neighbours = state.a.dot_add(simd, a, state.b.dot_add(simd, b, zero));
@@ -427,7 +427,7 @@ fn advance<S: Simd, const MIXED: bool>(
 
 /// Of a coefficient with this C: p = C psi_n + psi_(n+1), C xi_n + xi_(n+1), and the square of the latter.
 #[inline(always)]
-fn fraction<S: Simd>(
+fn fraction<S: Vectors>(
     simd: S,
     c: Complexes<S>,
     psi: [S::f64s; 2],
@@ -441,9 +441,9 @@ fn fraction<S: Simd>(
     (above, below, simd.mul_add_e_f64s(below.re, below.re, simd.mul_f64s(below.im, below.im)))
 }
 
-/// The coefficient, its square, and its absorbed part, with one over the square of what is below.
+/// The coefficient, its square, and the negative of its absorbed part, with one over the square of what is below.
 #[inline(always)]
-fn finish<S: Simd>(
+fn finish<S: Vectors>(
     simd: S,
     c: Complexes<S>,
     above: Complexes<S>,
@@ -452,8 +452,8 @@ fn finish<S: Simd>(
 ) -> (Complexes<S>, S::f64s, S::f64s) {
     let square = simd.mul_add_e_f64s(above.re, above.re, simd.mul_f64s(above.im, above.im));
     let scattered = simd.mul_f64s(square, weight);
-    let absorbed = simd.neg_f64s(simd.mul_f64s(c.im, weight));
-    let im = simd.sub_f64s(simd.mul_f64s(above.im, below.re), simd.mul_f64s(above.re, below.im));
-    let coefficient = Complexes { re: simd.add_f64s(scattered, absorbed), im: simd.mul_f64s(im, weight) };
-    (coefficient, scattered, absorbed)
+    let lost = simd.mul_f64s(c.im, weight);
+    let im = simd.mul_sub(above.im, below.re, simd.mul_f64s(above.re, below.im));
+    let coefficient = Complexes { re: simd.sub_f64s(scattered, lost), im: simd.mul_f64s(im, weight) };
+    (coefficient, scattered, lost)
 }

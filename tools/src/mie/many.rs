@@ -1,11 +1,11 @@
 //! Many spheres of one refractive index: their efficiencies, and weighted sums over them.
 
 use super::angular::Matrix;
+use super::instructions::{Vectors, Work};
 use super::lanes::{self, INTERLEAVED, Orders, Scratch};
 use super::sphere::is_matched;
 use super::{AngularTable, Efficiencies, Instructions, LARGEST_INSIDE, MieError, RefractiveIndex, SIZE_PARAMETERS};
 use super::{Solver, instructions, terms};
-use pulp::{Simd, WithSimd};
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -224,11 +224,11 @@ struct Singles<'a> {
     matrix: &'a mut Matrix,
 }
 
-impl WithSimd for Singles<'_> {
+impl Work for Singles<'_> {
     type Output = Result<(), MieError>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+    fn with<S: Vectors>(self, simd: S) -> Self::Output {
         let lanes = S::F64_LANES;
         for (sizes, weights) in self.sizes.chunks(lanes).zip(self.weights.chunks(lanes)) {
             let count = if self.angles.cosines().is_empty() { 0 } else { terms(sizes[sizes.len() - 1]) };
@@ -272,7 +272,7 @@ struct Job<'a> {
 impl Job<'_> {
     /// The spheres `from` on, up to `VECTORS` vectors of them; gives how many.
     #[inline(always)]
-    fn group<S: Simd, const VECTORS: usize>(&mut self, simd: S, from: usize) -> usize {
+    fn group<S: Vectors, const VECTORS: usize>(&mut self, simd: S, from: usize) -> usize {
         let lanes = S::F64_LANES;
         let group = from..self.sizes.len().min(from + VECTORS * lanes);
         let keep = !self.angles.cosines().is_empty();
@@ -294,11 +294,11 @@ impl Job<'_> {
     }
 }
 
-impl WithSimd for Job<'_> {
+impl Work for Job<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, simd: S) {
+    fn with<S: Vectors>(mut self, simd: S) {
         let mut from = 0;
         while from < self.sizes.len() {
             from += if self.sizes.len() - from > S::F64_LANES {
