@@ -75,12 +75,12 @@ pub struct Report {
 #[must_use]
 pub fn run(suite: &Suite, settings: &Settings, progress: &(dyn Fn(usize, usize) + Sync)) -> Report {
     let cases: Vec<_> = suite.cases.iter().enumerate().filter(|(_, case)| settings.tier.takes(&case.tier)).collect();
-    let shared = Shared::new(cases.iter().map(|(_, case)| &***case), &suite.profiles);
+    let shared = Shared::new(cases.iter().map(|(_, case)| &***case), &suite.profiles, settings.method);
     let (done, all) = (AtomicUsize::new(0), cases.len());
     let results: Vec<Result<Answer, Refusal>> = cases
         .into_par_iter()
         .map(|(index, case)| {
-            let result = physics::prepare(case, &suite.profiles, &shared)
+            let result = physics::prepare(case, &suite.profiles, &shared, settings.method)
                 .map(|estimand| estimate(&case.id, &estimand, settings, index as u64))
                 .map_err(|why| Refusal { id: case.id.clone(), why });
             progress(done.fetch_add(1, Ordering::Relaxed) + 1, all);
@@ -115,6 +115,9 @@ const REPLICATES: u64 = 32;
 /// Paths of each replicate of the pilot run, which only tells how many the run itself needs.
 const PILOT: u64 = 64;
 
+/// The fewest paths of each replicate of a run: the spread of shorter ones does not tell yet how rare the rare is.
+const LEAST: u64 = 256;
+
 /// The most paths that one case may take (minutes): where the asked error needs
 /// more, the answer states the error that was reached.
 const MOST_PATHS: u64 = 1 << 28;
@@ -139,7 +142,7 @@ fn estimate(id: &str, estimand: &Estimand, settings: &Settings, index: u64) -> A
             let mut sum = 0.0;
             for point in 0..points {
                 let mut sampler = Sampler::sobol(seed, index, replicate, point as u32);
-                sum += estimand.sample(settings.method, &mut sampler);
+                sum += estimand.sample(&mut sampler);
             }
             moments.add(sum / points as f64);
         }
@@ -157,7 +160,7 @@ fn estimate(id: &str, estimand: &Estimand, settings: &Settings, index: u64) -> A
             let mut points = PILOT;
             let mut pilot = Moments::default();
             replicates(&mut pilot, !settings.seed, REPLICATES, points);
-            let paths = pilot.needed(error).saturating_mul(points).clamp(REPLICATES * PILOT, MOST_PATHS);
+            let paths = pilot.needed(error).saturating_mul(points).clamp(REPLICATES * LEAST, MOST_PATHS);
             points = (paths / REPLICATES).next_power_of_two().min(POINTS);
             let mut target = paths.div_ceil(points).max(REPLICATES);
             loop {

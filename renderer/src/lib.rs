@@ -16,6 +16,7 @@ pub mod scene;
 pub mod spectrum;
 pub mod sweep;
 pub mod transport;
+mod vectors;
 
 #[cfg(test)]
 mod test_data;

@@ -110,6 +110,19 @@ impl<const L: usize> SunDisc<L> {
         (around(self.direction, 1.0 - versine, u[1]), self.weight(versine))
     }
 
+    /// Mean of the square of the angle (radians) by which a point of the disc lies above or below its centre, by brightness:
+    /// R^2 / 4 of an even disc; mean over the wavelengths. By the midpoint rule in the square of the radius.
+    #[must_use]
+    pub fn spread(&self) -> f64 {
+        const RINGS: u32 = 64;
+        let ring = |i: u32| {
+            let versine = self.cap * (f64::from(i) + 0.5) / f64::from(RINGS);
+            // Half of theta^2 = 2 (1 - cos theta).
+            versine * self.weight(versine).iter().sum::<f64>() / L as f64
+        };
+        (0..RINGS).map(ring).sum::<f64>() / f64::from(RINGS)
+    }
+
     /// Radiance in sr^-1 per unit irradiance in the unit vector `direction`; `None` off the
     /// disc, and everywhere for a beam.
     #[must_use]

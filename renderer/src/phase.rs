@@ -68,6 +68,12 @@ impl<const L: usize> Tabulated<L> {
         Some(Self { cosines, values, cumulative })
     }
 
+    /// Cosines of the scattering angle at the nodes, from -1 to 1.
+    #[must_use]
+    pub fn cosines(&self) -> &[f64] {
+        &self.cosines
+    }
+
     /// Index of the node at or below `c`, at most the last but one, and the fraction to the next.
     fn locate(&self, c: f64) -> (usize, f64) {
         let i = self.cosines.partition_point(|&x| x <= c).clamp(1, self.cosines.len() - 1) - 1;

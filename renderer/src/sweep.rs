@@ -16,7 +16,7 @@ use crate::atmosphere::{Columns, Medium, MediumError, Tolerance};
 use crate::geometry::Place;
 use crate::light::SunDisc;
 use crate::sampling::Sampler;
-use crate::transport::{self, Method, Problem};
+use crate::transport::{self, Estimator, Problem};
 use rayon::prelude::*;
 use scene::{SHARE, towards};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -145,7 +145,7 @@ pub struct Plan {
     /// Number of paths; the last scene has what is left.
     pub paths: u64,
     /// How they are traced.
-    pub method: Method,
+    pub method: Estimator,
 }
 
 impl Plan {

@@ -38,7 +38,7 @@ impl Lookup {
     }
 
     /// The cell i with nodes[i] <= x < nodes[i + 1]; the first or the last cell for what lies outside.
-    #[inline]
+    #[inline(always)]
     pub(super) fn cell(&self, x: f64) -> usize {
         let share = ((x - self.nodes[0]) * self.scale).clamp(0.0, 1.0);
         let bucket = (share.sqrt() * (self.first.len() - 1) as f64) as usize;
@@ -50,7 +50,7 @@ impl Lookup {
     }
 
     /// The cell of `x` and the fraction of it below `x`, 0 to 1.
-    #[inline]
+    #[inline(always)]
     pub(super) fn locate(&self, x: f64) -> (usize, f64) {
         let cell = self.cell(x);
         let (a, b) = (self.nodes[cell], self.nodes[cell + 1]);

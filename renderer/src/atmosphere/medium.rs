@@ -178,7 +178,7 @@ impl<const L: usize> Medium<L> {
     }
 
     /// Densities of all components in interval `i` at `fraction` of its height.
-    #[inline]
+    #[inline(always)]
     pub(super) fn densities(&self, interval: usize, fraction: f64) -> [f64; MAX_COMPONENTS] {
         let count = self.components.len();
         let mut densities = [0.0; MAX_COMPONENTS];
@@ -211,6 +211,20 @@ impl<const L: usize> Medium<L> {
         &self.nodes
     }
 
+    /// Altitudes in m at which the density of a scatterer jumps by more than a hundredth of itself.
+    #[must_use]
+    pub fn jumps(&self) -> Vec<f64> {
+        let count = self.components.len();
+        let jumps = |i: usize| {
+            let pairs = self.spans[(i - 1) * count..i * count].iter().zip(&self.spans[i * count..(i + 1) * count]);
+            pairs.zip(&self.components).any(|((below, above), component)| {
+                let (below, above) = (below.at(1.0), above.at(0.0));
+                component.scatters() && (below - above).abs() > 0.01 * below.abs().max(above.abs())
+            })
+        };
+        (1..self.nodes.len() - 1).filter(|&i| jumps(i)).map(|i| self.nodes[i]).collect()
+    }
+
     /// Largest change of the logarithm of a density over an interval.
     pub(super) fn most_rise(&self, interval: usize) -> f64 {
         let count = self.components.len();
@@ -233,9 +247,17 @@ impl<const L: usize> Medium<L> {
 
     /// All coefficients at an altitude in m; the nearest end of the medium for what lies outside.
     #[must_use]
+    #[inline]
     pub fn local_at(&self, altitude_m: f64) -> Local<L> {
         let (interval, fraction) = self.finder.locate(altitude_m);
         self.local_in(interval, fraction)
+    }
+
+    /// Densities of all components in m^-3 at an altitude in m, as [`Medium::local_at`].
+    #[inline(always)]
+    pub(crate) fn densities_at(&self, altitude_m: f64) -> [f64; MAX_COMPONENTS] {
+        let (interval, fraction) = self.finder.locate(altitude_m);
+        self.densities(interval, fraction)
     }
 
     #[inline]
@@ -251,6 +273,7 @@ impl<const L: usize> Medium<L> {
     }
 
     /// Sum over the components of density (or column) times extinction cross-section.
+    #[inline]
     fn combine(&self, densities: &[f64; MAX_COMPONENTS]) -> [f64; L] {
         let mut sum = [0.0; L];
         for (component, density) in self.components.iter().zip(densities) {

@@ -6,7 +6,7 @@ use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::phase::Phase;
 use crate::sampling::{Sampler, cosine_hemisphere};
-use crate::transport::{self, Method, Problem};
+use crate::transport::{self, Estimator, Method, Problem, Resolution, Solved};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -21,7 +21,7 @@ const LAYER_M: f64 = 1000.0;
 #[derive(Debug)]
 pub(super) struct Estimand {
     medium: Medium<1>,
-    columns: Arc<Columns<1>>,
+    tables: Tables,
     shape: Shape,
     albedo: f64,
     sun: SunDisc<1>,
@@ -29,6 +29,13 @@ pub(super) struct Estimand {
     place: Place,
     quantity: Quantity,
     f0: f64,
+}
+
+/// What a radiance is found with.
+#[derive(Debug)]
+enum Tables {
+    Columns(Estimator, Arc<Columns<1>>),
+    Solved(Arc<Solved<1>>),
 }
 
 /// What is asked at the place.
@@ -71,14 +78,14 @@ impl Estimand {
 
     /// One unbiased estimate. A flux is pi times the mean radiance over directions with
     /// the density cos(theta)/pi.
-    pub(super) fn sample(&self, method: Method, sampler: &mut Sampler) -> f64 {
+    pub(super) fn sample(&self, sampler: &mut Sampler) -> f64 {
         let flux = |facing: DVec3, sampler: &mut Sampler| {
             let [u, v, ..] = sampler.four();
             let direction = cosine_hemisphere(facing, [u, v]);
-            PI * self.radiance(method, direction, sampler)
+            PI * self.radiance(direction, sampler)
         };
         match self.quantity {
-            Quantity::Radiance(direction) => self.radiance(method, direction, sampler),
+            Quantity::Radiance(direction) => self.radiance(direction, sampler),
             Quantity::Direct => self.direct(),
             Quantity::Diffuse => flux(self.place.up, sampler),
             // The reflection is an order of its own: see `radiance`.
@@ -87,24 +94,36 @@ impl Estimand {
         }
     }
 
-    fn radiance(&self, method: Method, direction: DVec3, sampler: &mut Sampler) -> f64 {
+    fn radiance(&self, direction: DVec3, sampler: &mut Sampler) -> f64 {
+        let (estimator, columns) = match &self.tables {
+            Tables::Solved(solved) => {
+                let single = self.max_orders == Some(1);
+                let [radiance] = solved.radiance(self.place, direction, self.sun.direction(), single);
+                return self.f0 * radiance;
+            }
+            Tables::Columns(estimator, columns) => (*estimator, columns),
+        };
         let problem = Problem {
             shape: self.shape,
             medium: &self.medium,
-            columns: &self.columns,
+            columns,
             albedo: [self.albedo],
             sun: Some(&self.sun),
             environment: None,
             max_orders: self.max_orders.map(|n| if self.quantity == Quantity::Reflected { n - 1 } else { n }),
         };
-        let [radiance] = transport::radiance(method, &problem, self.place, direction, sampler);
+        let [radiance] = transport::radiance(estimator, &problem, self.place, direction, sampler);
         self.f0 * radiance
     }
 }
 
-/// Columns of the atmospheres of several cases: they depend on the profile and on the planet, and on nothing else.
+/// What several cases share, since it depends on the profile, the planet and the ground and on nothing else: columns, and
+/// solved tables where they are asked for.
 #[derive(Debug, Default)]
-pub(super) struct Shared(BTreeMap<(String, u64), Arc<Columns<1>>>);
+pub(super) struct Shared {
+    columns: BTreeMap<(String, u64), Arc<Columns<1>>>,
+    solved: BTreeMap<(String, u64, u64, String), Arc<Solved<1>>>,
+}
 
 impl Shared {
     fn key(case: &Case) -> Option<(String, u64)> {
@@ -112,23 +131,46 @@ impl Shared {
         (case.geometry == "spherical").then(|| (profile, case.planet_radius_km.map_or(0, f64::to_bits)))
     }
 
-    /// Makes the columns of those cases that are not refused for their air.
-    pub(super) fn new<'a>(cases: impl Iterator<Item = &'a Case>, profiles: &BTreeMap<String, Profile>) -> Self {
+    fn ground_key(case: &Case) -> Option<(String, u64, u64, String)> {
+        let phase = format!("{:?}", case.phase);
+        Self::key(case).map(|(profile, radius)| (profile, radius, case.albedo.to_bits(), phase))
+    }
+
+    /// Makes what the method needs for those cases that are not refused for their air.
+    pub(super) fn new<'a>(
+        cases: impl Iterator<Item = &'a Case>,
+        profiles: &BTreeMap<String, Profile>,
+        method: Method,
+    ) -> Self {
         let mut shared = Self::default();
         for case in cases {
-            if let Some(key) = Self::key(case)
-                && !shared.0.contains_key(&key)
-                && let Ok((shape, medium)) = air(case, profiles)
-            {
-                shared.0.insert(key, Arc::new(Columns::new(&medium, shape, Tolerance::RENDER)));
+            let (Some(key), Some(ground)) = (Self::key(case), Self::ground_key(case)) else { continue };
+            let ready = match method {
+                Method::Solved => shared.solved.contains_key(&ground),
+                _ => shared.columns.contains_key(&key),
+            };
+            if ready {
+                continue;
+            }
+            let Ok((shape, medium)) = air(case, profiles) else { continue };
+            if method == Method::Solved {
+                if let Ok(solved) = Solved::new(&medium, shape, [case.albedo], &Resolution::RENDER) {
+                    shared.solved.insert(ground, Arc::new(solved));
+                }
+            } else {
+                shared.columns.insert(key, Arc::new(Columns::new(&medium, shape, Tolerance::RENDER)));
             }
         }
         shared
     }
 
     fn columns(&self, case: &Case, shape: Shape, medium: &Medium<1>) -> Arc<Columns<1>> {
-        let ready = Self::key(case).and_then(|key| self.0.get(&key)).cloned();
+        let ready = Self::key(case).and_then(|key| self.columns.get(&key)).cloned();
         ready.unwrap_or_else(|| Arc::new(Columns::new(medium, shape, Tolerance::RENDER)))
+    }
+
+    fn solved(&self, case: &Case) -> Option<Arc<Solved<1>>> {
+        Self::ground_key(case).and_then(|key| self.solved.get(&key)).cloned()
     }
 }
 
@@ -151,7 +193,12 @@ fn air(case: &Case, profiles: &BTreeMap<String, Profile>) -> Result<(Shape, Medi
 }
 
 /// Makes a case ready, or says in a phrase why it is refused.
-pub(super) fn prepare(case: &Case, profiles: &BTreeMap<String, Profile>, shared: &Shared) -> Result<Estimand, String> {
+pub(super) fn prepare(
+    case: &Case,
+    profiles: &BTreeMap<String, Profile>,
+    shared: &Shared,
+    method: Method,
+) -> Result<Estimand, String> {
     if !matches!(case.polarization.as_str(), "scalar" | "any") {
         return Err("polarised transfer is not offered yet: scalar cases only".into());
     }
@@ -187,8 +234,17 @@ pub(super) fn prepare(case: &Case, profiles: &BTreeMap<String, Profile>, shared:
         "flux_up_top" => Quantity::Upward,
         other => return Err(format!("quantity {other:?} is not offered")),
     };
+    let tables = match method.estimator() {
+        Some(estimator) => Tables::Columns(estimator, shared.columns(case, shape, &medium)),
+        None => {
+            if max_orders.is_some_and(|orders| orders > 1) {
+                return Err("a solved table has one order or all".into());
+            }
+            Tables::Solved(shared.solved(case).ok_or("solved tables need a round planet")?)
+        }
+    };
     Ok(Estimand {
-        columns: shared.columns(case, shape, &medium),
+        tables,
         medium,
         shape,
         albedo: case.albedo,

@@ -6,7 +6,7 @@ use crate::render::Shard;
 use crate::scene::{Albedo, CameraKind, Scene, SceneError, word};
 use crate::spectrum::Wavelengths;
 use crate::sweep::PATHS;
-use crate::transport::Method;
+use crate::transport::{Estimator, Method};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -33,7 +33,7 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "scene", help_heading = "Files")]
     pub resume: Option<PathBuf>,
 
-    /// Estimator: paths on column tables, or the brute-force judge [default: paths]
+    /// Solved tables, paths on column tables, or the brute-force judge [default: paths]
     #[arg(long, value_name = "METHOD", help_heading = "Sampling")]
     pub method: Option<MethodName>,
     /// Samples per pixel, 1 to 10^9, rounded up to whole blocks; with --error or --time the most of them [default: 64]
@@ -211,7 +211,7 @@ pub(super) struct RadianceArgs {
     /// Which cases
     #[arg(long, default_value = "core")]
     pub tier: TierName,
-    /// Estimator: paths on column tables, or the brute-force judge
+    /// Solved tables, paths on column tables, or the brute-force judge
     #[arg(long, value_name = "METHOD", default_value = "paths")]
     pub method: MethodName,
     /// Standard error of each case relative to its value, 1e-5 to 1: 1% or 0.01 [default: 1%]
@@ -234,12 +234,21 @@ pub(super) struct RadianceArgs {
 /// Flags of `airlight bench`.
 #[derive(Debug, Args)]
 pub(super) struct BenchArgs {
-    /// What to measure: anchors, four skies (450, 680 and 550 nm by day, 450 nm in twilight)
+    /// What to measure
     #[arg(value_name = "WHAT")]
     pub what: BenchName,
-    /// Estimator
+    /// Estimator of the anchors
     #[arg(long, value_name = "METHOD", default_value = "paths")]
-    pub method: MethodName,
+    pub method: EstimatorName,
+    /// Paths in each direction beside solved tables
+    #[arg(long, value_name = "N", default_value_t = 8192)]
+    pub paths: u64,
+    /// Folder with the tables
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
+    /// Biomes beside which solved tables are put: one, or all
+    #[arg(long, value_name = "NAME", default_value = "all")]
+    pub biome: String,
     /// Least time for each direction in seconds
     #[arg(long, value_name = "S", default_value_t = 1.0)]
     pub seconds: f64,
@@ -247,7 +256,10 @@ pub(super) struct BenchArgs {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum BenchName {
+    /// Four skies (450, 680 and 550 nm by day, 450 nm in twilight)
     Anchors,
+    /// Solved tables of clear air and of every biome beside the path tracer
+    Solved,
 }
 
 /// Flags of `airlight sweep`.
@@ -261,7 +273,7 @@ pub(super) struct SweepArgs {
     pub seed: u64,
     /// Estimator
     #[arg(long, value_name = "METHOD", default_value = "paths")]
-    pub method: MethodName,
+    pub method: EstimatorName,
     /// Threads, 1 to 1024; the findings do not depend on it [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -275,15 +287,32 @@ pub(super) struct SweepArgs {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum MethodName {
-    Judge,
+    Solved,
     Paths,
+    Judge,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum EstimatorName {
+    Paths,
+    Judge,
+}
+
+impl From<EstimatorName> for Estimator {
+    fn from(name: EstimatorName) -> Self {
+        match name {
+            EstimatorName::Paths => Self::Paths,
+            EstimatorName::Judge => Self::Judge,
+        }
+    }
 }
 
 impl From<MethodName> for Method {
     fn from(name: MethodName) -> Self {
         match name {
-            MethodName::Judge => Self::Judge,
+            MethodName::Solved => Self::Solved,
             MethodName::Paths => Self::Paths,
+            MethodName::Judge => Self::Judge,
         }
     }
 }

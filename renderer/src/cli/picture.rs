@@ -201,6 +201,15 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, 
     if let Some(spp) = scene.spp.filter(|spp| scene.error.is_none() && !spp.is_multiple_of(block)) {
         println!("            ({spp} are not whole blocks, which are rounded up)");
     }
+    if let Some(error) = sky.table_error() {
+        println!(
+            "table       solved for every sun and observer, off by about {} (rms, from a coarser one)",
+            percent(error)
+        );
+    }
+    if errors.relative.is_infinite() && sky.is_solved() {
+        return;
+    }
     println!(
         "error       {} (rms over mean radiance); median standard error {} of luminance, {} of spectral radiance",
         percent(errors.relative),

@@ -30,6 +30,9 @@ pub(super) fn run(args: &RadianceArgs) -> Result<Outcome, Failure> {
     Ok(Outcome::Done)
 }
 
+/// The most cases that are named beside a reason.
+const SHOWN: usize = 5;
+
 /// How many were answered, and the others by the reason why not.
 fn describe(report: &Report) {
     let paths: u64 = report.answers.iter().map(|answer| answer.paths).sum();
@@ -39,6 +42,8 @@ fn describe(report: &Report) {
         reasons.entry(why).or_default().push(id);
     }
     for (why, ids) in reasons {
-        println!("refused     {} cases, {why}: {}", ids.len(), ids.join(", "));
+        let (shown, rest) = ids.split_at(ids.len().min(SHOWN));
+        let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
+        println!("refused     {} cases, {why}: {}{more}", ids.len(), shown.join(", "));
     }
 }

@@ -41,13 +41,13 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     let extent = Extent { shard: part.shard, deadline };
     let files = Files::new(&args.files.output, checkpoint(args).as_deref())?;
     let data = Data::load(&args.files.data).map_err(Failure::error)?;
-    let sky = sky(&scene, &data)?;
+    let pool = super::pool(args.threads)?;
+    let sky = pool.install(|| sky(&scene, &data))?;
     if let Some((x, y)) = args.pixel {
         return print_sample(&scene, &sky, (x, y), args.sample);
     }
     let head = Head::new(&scene, &sky, vec![part]);
     let film = start(kept, &scene, &sky, extent, args.resume.as_deref())?;
-    let pool = super::pool(args.threads)?;
     let stop = stop_on_interrupt();
     let mut last = Instant::now();
     let mut keep = |film: &Film| {

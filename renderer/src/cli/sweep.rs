@@ -5,7 +5,7 @@ use super::output::println;
 use super::progress::{Line, amount, duration};
 use super::{Failure, Outcome};
 use crate::sweep::{Bad, Departure, Fault, LAW, Plan, Report, Scene, Traced, laws};
-use crate::transport::Method;
+use crate::transport::Estimator;
 
 /// Skies under which the laws are checked.
 const SKIES: u64 = 16;
@@ -54,7 +54,7 @@ fn replay(plan: &Plan, scene: u64, path: u64) -> Result<Outcome, Failure> {
 
 /// What traces a bad path again.
 fn command(plan: &Plan, bad: &Bad) -> String {
-    let method = if plan.method == Method::Judge { " --method judge" } else { "" };
+    let method = if plan.method == Estimator::Judge { " --method judge" } else { "" };
     format!("airlight sweep --seed {} --scene {} --path {}{method}", plan.seed, bad.scene, bad.path)
 }
 

@@ -8,6 +8,7 @@ use crate::atmosphere::HazePhase;
 use crate::data::Data;
 use crate::scene::CameraKind;
 use crate::spectrum::Wavelengths;
+use crate::transport::Method;
 use std::path::Path;
 use tables::views::Biome;
 
@@ -33,6 +34,7 @@ fn picture(change: impl FnOnce(&mut Scene)) -> Scene {
         width: Some(SIDE),
         height: Some(SIDE),
         wavelengths_nm: nm,
+        method: Method::Paths,
         ..Scene::default()
     };
     change(&mut scene);

@@ -29,8 +29,9 @@ use crate::atmosphere::AirError;
 use crate::camera::Camera;
 use crate::data::DataError;
 use crate::film::{Errors, Film, Row};
-use crate::scene::{DEFAULT_SPP, MAX_SPP, Scene, SceneError};
+use crate::scene::{MAX_SPP, Scene, SceneError};
 use crate::spectrum::linear_srgb;
+use crate::transport::SolveError;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::Instant;
@@ -51,6 +52,9 @@ pub enum RenderError {
     /// A table does not reach.
     #[error(transparent)]
     Table(#[from] TableError),
+    /// The method does not cover the scene.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
     /// The threads cannot be started.
     #[error("the threads cannot be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -237,7 +241,7 @@ impl Extent {
     #[must_use]
     pub fn limit(&self, scene: &Scene) -> u32 {
         let open = scene.error.is_some() || self.deadline.is_some();
-        let samples = scene.spp.unwrap_or(if open { MAX_SPP } else { DEFAULT_SPP });
+        let samples = scene.spp.unwrap_or(if open { MAX_SPP } else { scene.default_spp() });
         self.shard.share(samples.div_ceil(scene.block()))
     }
 

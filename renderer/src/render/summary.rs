@@ -23,9 +23,12 @@ pub struct Summary {
 const HEMISPHERE: u64 = 1 << 40;
 const ZENITH: u64 = HEMISPHERE + 1;
 
-/// Samples between looks at the error, and the most of them.
-const BATCH: u64 = 1024;
-const MOST: u64 = 128 * BATCH;
+/// Samples of a scrambled Sobol sequence, and the fewest and the most sequences.
+const SEQUENCE: u64 = 64;
+const SEQUENCES: (u64, u64) = (16, 2048);
+
+/// The most sequences of a sky without noise: what is left is the quadrature over directions.
+const SOLVED: u64 = 64;
 
 /// Standard error that is enough.
 const ENOUGH: f64 = 5e-3;
@@ -33,12 +36,14 @@ const ENOUGH: f64 = 5e-3;
 impl Summary {
     /// Computes the summary on the current thread pool: the sun by quadrature
     /// ([`Sky::direct_irradiance`]); the sky as pi times the mean luminance over directions
-    /// distributed as cos(theta)/pi; both estimates to 0.5 % standard error or 131 072 samples, fewer once `stop`
-    /// is set.
+    /// distributed as cos(theta)/pi; both estimates to 0.5 % standard error or 131 072 samples, in sequences whose
+    /// spread is the error, fewer once `stop` is set.
     #[must_use]
     pub fn new(sky: &Sky, seed: u64, stop: &AtomicBool) -> Self {
-        let hemisphere =
-            estimate(sky, (seed, HEMISPHERE), stop, |sampler| cosine_hemisphere(DVec3::Z, sampler.uniform_2d()));
+        let hemisphere = estimate(sky, (seed, HEMISPHERE), stop, |sampler| {
+            let [u, v, ..] = sampler.four();
+            cosine_hemisphere(DVec3::Z, [u, v])
+        });
         Self {
             sun_lux: sky.colour().xyz(&sky.direct_irradiance())[1],
             sky_lux: Estimate { mean: PI * hemisphere.mean, error: PI * hemisphere.error },
@@ -55,16 +60,22 @@ fn estimate(
     draw: impl Fn(&mut Sampler) -> DVec3 + Sync,
 ) -> Estimate {
     let (mut count, mut mean, mut squares) = (0.0, 0.0, 0.0);
-    for first in (0..MOST).step_by(BATCH as usize) {
+    let most = if sky.is_solved() { SOLVED } else { SEQUENCES.1 };
+    for first in (0..most).step_by(SEQUENCES.0 as usize) {
         // Collected in order and summed by one thread: the same sum for any number of threads.
-        let luminances: Vec<f64> = (first..first + BATCH)
+        let luminances: Vec<f64> = (first..first + SEQUENCES.0)
             .into_par_iter()
-            .map(|sample| {
-                let mut sampler = Sampler::new(seed, stream, sample);
-                let direction = draw(&mut sampler);
+            .map(|sequence| {
                 let mut factors = vec![0.0; sky.wavelengths()];
-                sky.radiance(direction, &sampler, &mut factors);
-                sky.colour().xyz(&factors)[1]
+                let sum: f64 = (0..SEQUENCE)
+                    .map(|point| {
+                        let mut sampler = Sampler::sobol(seed, stream, sequence, point as u32);
+                        let direction = draw(&mut sampler);
+                        sky.radiance(direction, &sampler, &mut factors);
+                        sky.colour().xyz(&factors)[1]
+                    })
+                    .sum();
+                sum / SEQUENCE as f64
             })
             .collect();
         for y in luminances {

@@ -4,6 +4,7 @@ use super::*;
 use crate::data::Data;
 use crate::scene::CameraKind;
 use crate::spectrum::Wavelengths;
+use crate::transport::Method;
 use std::path::Path;
 use std::time::Duration;
 
@@ -16,6 +17,7 @@ fn small() -> Scene {
         height: Some(10),
         spp: Some(3),
         wavelengths_nm: Wavelengths::new(vec![450.0, 550.0, 650.0]).expect("valid"),
+        method: Method::Paths,
         ..Scene::default()
     }
 }

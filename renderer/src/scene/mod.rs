@@ -100,7 +100,7 @@ pub struct Scene {
     pub height: Option<u32>,
     /// Exposure of the PNG, EV at ISO 100, -30 to 30; automatic if not given.
     pub exposure_ev: Option<f64>,
-    /// Estimator.
+    /// How radiance is found.
     pub method: Method,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -152,7 +152,7 @@ impl Default for Scene {
             width: None,
             height: None,
             exposure_ev: None,
-            method: Method::Paths,
+            method: Method::Solved,
             seed: 0,
             spp: None,
             block: None,
@@ -258,12 +258,18 @@ impl Scene {
         let samples = match self.error {
             // At most 3.4e9, for the least error.
             Some(error) => (1.0 / (3.0 * error * error)) as u32,
-            None => self.spp.unwrap_or(DEFAULT_SPP),
+            None => self.spp.unwrap_or(self.default_spp()),
         };
         self.block.unwrap_or_else(|| {
             let most = (samples / BLOCKS).clamp(1, LARGE_BLOCK);
             1 << most.ilog2()
         })
+    }
+
+    /// Samples per pixel if nothing is said of them: [`DEFAULT_SPP`], or one, at the pixel's middle, of a solved table, which has no noise.
+    #[must_use]
+    pub fn default_spp(&self) -> u32 {
+        if self.method == Method::Solved { 1 } else { DEFAULT_SPP }
     }
 
     fn field_of_view_deg(&self) -> f64 {
@@ -401,22 +407,25 @@ mod tests {
 
     #[test]
     fn samples_make_at_least_sixteen_blocks() {
-        let of = |spp| Scene { spp, ..Scene::default() }.block();
+        let paths = || Scene { method: Method::Paths, ..Scene::default() };
+        let of = |spp| Scene { spp, ..paths() }.block();
         assert_eq!([None, Some(1), Some(31), Some(32), Some(100), Some(5000)].map(of), [4, 1, 1, 2, 4, 64]);
-        let of = |error| Scene { error: Some(error), spp: Some(9), ..Scene::default() }.block();
+        let of = |error| Scene { error: Some(error), spp: Some(9), ..paths() }.block();
         // 1/(3 E^2) = 33, 133, 833 and 3333 samples.
         assert_eq!([0.5, 0.1, 0.05, 0.02, 0.01, 1e-5].map(of), [1, 2, 8, 32, 64, 64]);
-        assert_eq!(Scene { block: Some(128), ..Scene::default() }.block(), 128);
+        assert_eq!(Scene { block: Some(128), ..paths() }.block(), 128);
+        assert_eq!(Scene::default().block(), 1, "one sample, at the pixel's middle");
     }
 
     #[test]
     fn scenes_of_one_picture_may_differ_in_seed_and_effort() {
-        let scene = Scene::default();
-        let other = Scene { seed: 7, error: Some(0.1), block: Some(4), width: Some(256), ..Scene::default() };
+        let default = || Scene { method: Method::Paths, ..Scene::default() };
+        let scene = default();
+        let other = Scene { seed: 7, error: Some(0.1), block: Some(4), width: Some(256), ..default() };
         assert_eq!(scene.difference(&other), None);
-        let other = Scene { sun_elevation_deg: 29.0, ..Scene::default() };
+        let other = Scene { sun_elevation_deg: 29.0, ..default() };
         assert_eq!(scene.difference(&other).as_deref(), Some("sun_elevation_deg is 30.0 in one, 29.0 in the other"));
-        assert!(scene.difference(&Scene { spp: Some(1), ..Scene::default() }).expect("blocks").contains("block is 4"));
+        assert!(scene.difference(&Scene { spp: Some(1), ..default() }).expect("blocks").contains("block is 4"));
     }
 
     #[test]

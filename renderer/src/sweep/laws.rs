@@ -14,7 +14,7 @@ use crate::atmosphere::Medium;
 use crate::geometry::{End, Place, Ray, Shape};
 use crate::light::SunDisc;
 use crate::sampling::Sampler;
-use crate::transport::{Method, Problem};
+use crate::transport::{Estimator, Problem};
 use glam::DVec3;
 use rayon::prelude::*;
 use tables::units::KM;
@@ -117,7 +117,7 @@ fn single<const L: usize>(problem: &Problem<'_, L>, from: Place, direction: DVec
         let mut mean = [0.0; L];
         for point in 0..points {
             let mut sampler = Sampler::sobol(0, 0, u64::from(replicate), point);
-            let radiance = transport::radiance(Method::Paths, problem, from, direction, &mut sampler);
+            let radiance = transport::radiance(Estimator::Paths, problem, from, direction, &mut sampler);
             for (mean, radiance) in mean.iter_mut().zip(radiance) {
                 *mean += radiance / f64::from(points);
             }

@@ -2,7 +2,7 @@ use super::*;
 
 #[test]
 fn sweep() {
-    let plan = Plan { seed: 1, paths: 1_000_000, method: Method::Paths };
+    let plan = Plan { seed: 1, paths: 1_000_000, method: Estimator::Paths };
     let report = plan.run(&|_| ());
     assert_eq!((report.scenes, report.paths), (977, 1_000_000));
     assert_eq!((report.bad, &report.examples), (0, &vec![]));
@@ -10,14 +10,14 @@ fn sweep() {
 
 #[test]
 fn sweep_of_the_judge() {
-    let plan = Plan { seed: 2, paths: 20_000, method: Method::Judge };
+    let plan = Plan { seed: 2, paths: 20_000, method: Estimator::Judge };
     let report = plan.run(&|_| ());
     assert_eq!((report.bad, &report.examples), (0, &vec![]));
 }
 
 #[test]
 fn sweep_is_the_same_on_one_thread_and_three() {
-    let plan = Plan { seed: 3, paths: 40_000, method: Method::Paths };
+    let plan = Plan { seed: 3, paths: 40_000, method: Estimator::Paths };
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| plan.run(&|_| ()))

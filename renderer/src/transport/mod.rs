@@ -16,18 +16,44 @@ mod judge;
 mod paths;
 mod ratio;
 mod scatter;
+mod solved;
 
 use crate::atmosphere::{Columns, Medium};
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::sampling::Sampler;
 use glam::DVec3;
+pub use solved::{Resolution, SolveError, Solved};
+
 use serde::{Deserialize, Serialize};
 
-/// How the radiance is estimated.
+/// How radiance is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
+    /// From a solved table ([`Solved`]): without noise; for a uniform ground.
+    Solved,
+    /// By [`Estimator::Paths`].
+    Paths,
+    /// By [`Estimator::Judge`].
+    Judge,
+}
+
+impl Method {
+    /// Its estimator; none for solved tables.
+    #[must_use]
+    pub fn estimator(self) -> Option<Estimator> {
+        match self {
+            Self::Solved => None,
+            Self::Paths => Some(Estimator::Paths),
+            Self::Judge => Some(Estimator::Judge),
+        }
+    }
+}
+
+/// How radiance is estimated from random numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Estimator {
     /// The brute-force judge: analog free flights by delta tracking. Unbiased,
     /// with nothing clever in it; slow where the air is thin.
     Judge,
@@ -62,7 +88,7 @@ pub struct Problem<'a, const L: usize> {
 /// solar disc itself. Equal streams give equal estimates.
 #[must_use]
 pub fn radiance<const L: usize>(
-    method: Method,
+    estimator: Estimator,
     problem: &Problem<'_, L>,
     from: Place,
     direction: DVec3,
@@ -70,9 +96,9 @@ pub fn radiance<const L: usize>(
 ) -> [f64; L] {
     sampler.go_to(1);
     let hero = ((sampler.four()[0] * L as f64) as usize).min(L - 1);
-    match method {
-        Method::Judge => judge::trace(problem, from, direction, hero, sampler),
-        Method::Paths => paths::trace(problem, from, direction, hero, sampler),
+    match estimator {
+        Estimator::Judge => judge::trace(problem, from, direction, hero, sampler),
+        Estimator::Paths => paths::trace(problem, from, direction, hero, sampler),
     }
 }
 

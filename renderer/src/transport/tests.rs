@@ -11,11 +11,11 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 use tables::{Axis, Curve, Interpolation, Outside, Scale};
 
-const RADIUS: f64 = 6_371_000.0;
-const EARTH: Shape = Shape::Sphere { radius_m: RADIUS };
-const METHODS: [Method; 2] = [Method::Judge, Method::Paths];
+pub(super) const RADIUS: f64 = 6_371_000.0;
+pub(super) const EARTH: Shape = Shape::Sphere { radius_m: RADIUS };
+const METHODS: [Estimator; 2] = [Estimator::Judge, Estimator::Paths];
 
-fn exponential(scale_height: f64, top: f64) -> Curve {
+pub(super) fn exponential(scale_height: f64, top: f64) -> Curve {
     let axis = Axis::uniform("altitude", "m", 0.0, top / 200.0, 201).expect("valid");
     let values = axis.nodes.iter().map(|z| (-z / scale_height).exp()).collect();
     Curve::new(axis, Scale::Logarithmic, values).expect("valid")
@@ -27,16 +27,16 @@ fn slab(bottom: f64, top: f64) -> Curve {
     Curve::new(axis, Scale::Linear, vec![1.0, 1.0]).expect("valid")
 }
 
-fn rayleigh<const L: usize>(gamma: f64) -> Phase<L> {
+pub(super) fn rayleigh<const L: usize>(gamma: f64) -> Phase<L> {
     Phase::Rayleigh { gamma: [gamma; L] }
 }
 
-fn medium<const L: usize>(components: Vec<Component<L>>, top: f64) -> Medium<L> {
+pub(super) fn medium<const L: usize>(components: Vec<Component<L>>, top: f64) -> Medium<L> {
     Medium::new(components, top).expect("valid")
 }
 
 /// Molecules, haze and an absorbing layer, at four wavelengths of different load.
-fn mixed() -> Medium<4> {
+pub(super) fn mixed() -> Medium<4> {
     let top = 6e4;
     medium(
         vec![
@@ -63,19 +63,19 @@ fn mixed() -> Medium<4> {
     )
 }
 
-fn columns<const L: usize>(medium: &Medium<L>, shape: Shape) -> Columns<L> {
+pub(super) fn columns<const L: usize>(medium: &Medium<L>, shape: Shape) -> Columns<L> {
     Columns::new(medium, shape, Tolerance::RENDER)
 }
 
-fn towards(zenith_deg: f64, azimuth_deg: f64) -> DVec3 {
+pub(super) fn towards(zenith_deg: f64, azimuth_deg: f64) -> DVec3 {
     let (sin, cos) = zenith_deg.to_radians().sin_cos();
     let (sin_a, cos_a) = azimuth_deg.to_radians().sin_cos();
     DVec3::new(sin * cos_a, sin * sin_a, cos)
 }
 
 /// Mean and standard error of `n` estimates at each wavelength.
-fn estimate<const L: usize>(
-    method: Method,
+pub(super) fn estimate<const L: usize>(
+    method: Estimator,
     problem: &Problem<'_, L>,
     from: Place,
     direction: DVec3,
@@ -142,7 +142,7 @@ fn an_absorbing_atmosphere_dims_the_environment_by_beer_lambert() {
             let [found] = estimate(method, &problem, Place::above(0.0), towards(zenith, 0.0), 60_000, 1);
             // The judge has no tables; those of the paths are good to 2e-5.
             let (value, error) = found;
-            let error = if method == Method::Paths { 4e-6 } else { error };
+            let error = if method == Estimator::Paths { 4e-6 } else { error };
             agree((value, error), (-depth).exp(), &format!("{method:?}, {shape:?}, zenith {zenith}"));
         }
     }
@@ -316,8 +316,8 @@ fn methods_agree_at_every_wavelength_of_a_mixture() {
             max_orders: None,
         };
         let from = Place::above(altitude);
-        let judge = estimate(Method::Judge, &problem, from, towards(zenith, azimuth), 60_000, 5);
-        let paths = estimate(Method::Paths, &problem, from, towards(zenith, azimuth), 20_000, 6);
+        let judge = estimate(Estimator::Judge, &problem, from, towards(zenith, azimuth), 60_000, 5);
+        let paths = estimate(Estimator::Paths, &problem, from, towards(zenith, azimuth), 20_000, 6);
         for lane in 0..4 {
             let (a, b) = (judge[lane], paths[lane]);
             agree((a.0, a.1.hypot(b.1)), b.0, &format!("{altitude} m, zenith {zenith}, wavelength {lane}"));

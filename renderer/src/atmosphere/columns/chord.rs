@@ -3,6 +3,7 @@
 use super::build::{between_weights, from_start_weights};
 use super::{Columns, Rows};
 use crate::geometry::{Place, Shape};
+use crate::vectors::exp_minus;
 use glam::DVec3;
 
 /// The part of a ray inside the atmosphere, with its columns.
@@ -52,7 +53,7 @@ impl<const L: usize> Columns<L> {
     /// The chord of the ray from `place` in the unit `direction`; `None` if it never enters the atmosphere. A ray that
     /// begins on the ground and looks down has a chord without length.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn chord(&self, place: Place, direction: DVec3) -> Option<Chord<'_, L>> {
         let mu = place.up.dot(direction).clamp(-1.0, 1.0);
         let h = place.altitude_m;
@@ -84,7 +85,7 @@ impl<const L: usize> Columns<L> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn spherical(&self, radius: f64, h: f64, mu: f64) -> Option<Chord<'_, L>> {
         let top = self.top_m();
         let r0 = radius + h;
@@ -131,19 +132,19 @@ impl<const L: usize> Columns<L> {
 
     /// Transmittance at each wavelength from `place` in the unit `direction` out to space; `None` if the planet is in the way.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn transmittance(&self, place: Place, direction: DVec3) -> Option<[f64; L]> {
         match self.chord(place, direction) {
             None => Some([1.0; L]),
             Some(chord) if chord.ground => None,
-            Some(chord) => Some(chord.total().map(|tau| (-tau).exp())),
+            Some(chord) => Some(exp_minus(chord.total())),
         }
     }
 }
 
 impl<const L: usize> Rows<L> {
     /// Rows `row` and `row + 1`, each of `nodes` nodes.
-    #[inline]
+    #[inline(always)]
     fn pair(&self, nodes: usize, row: usize, share: f64) -> Pair<'_, L> {
         let (a, b) = self.means[row * nodes..(row + 2) * nodes].split_at(nodes);
         Pair { means: [a, b], starts: [&self.starts[row], &self.starts[row + 1]], share }
@@ -152,14 +153,37 @@ impl<const L: usize> Rows<L> {
 
 impl<const L: usize> Pair<'_, L> {
     /// Mean extinction up to node `k` at wavelength `j`.
-    #[inline]
+    #[inline(always)]
     fn mean(&self, k: usize, j: usize) -> f64 {
         let [a, b] = self.means.map(|row| f64::from(row[k][j]));
         a + self.share * (b - a)
     }
 
+    /// Mean extinctions up to node `k`.
+    #[inline(always)]
+    fn means(&self, k: usize) -> [f64; L] {
+        let [a, b] = [&self.means[0][k], &self.means[1][k]];
+        let mut means = [0.0; L];
+        for j in 0..L {
+            let (a, b) = (f64::from(a[j]), f64::from(b[j]));
+            means[j] = a + self.share * (b - a);
+        }
+        means
+    }
+
+    /// Extinctions at the start of the line.
+    #[inline(always)]
+    fn begins(&self) -> [f64; L] {
+        let [a, b] = self.starts;
+        let mut begins = [0.0; L];
+        for j in 0..L {
+            begins[j] = a[j] + self.share * (b[j] - a[j]);
+        }
+        begins
+    }
+
     /// Extinction at the start of the line at wavelength `j`.
-    #[inline]
+    #[inline(always)]
     fn start(&self, j: usize) -> f64 {
         let [a, b] = self.starts.map(|start| start[j]);
         a + self.share * (b - a)
@@ -186,9 +210,15 @@ impl<const L: usize> Chord<'_, L> {
         s - self.eye
     }
 
+    /// Altitude in m of the perigee of the line, below 0 if it cuts the planet.
+    #[must_use]
+    pub fn perigee(&self) -> f64 {
+        self.perigee.0
+    }
+
     /// Altitude of a point in m.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn altitude(&self, s: f64) -> f64 {
         let (perigee, radius) = self.perigee;
         match self.columns.shape {
@@ -198,7 +228,7 @@ impl<const L: usize> Chord<'_, L> {
     }
 
     /// The chord with the optical depths of its beginning, which is at that altitude.
-    #[inline]
+    #[inline(always)]
     fn begun(mut self, altitude: f64) -> Self {
         let distance = self.from.abs();
         if distance > self.origin {
@@ -213,16 +243,21 @@ impl<const L: usize> Chord<'_, L> {
 
     /// Optical depth of the whole chord: it ends on the ground, from which depths count, or at the last node.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn total(&self) -> [f64; L] {
         let last = self.columns.altitudes.nodes().len() - 1;
         let length = if self.ground { 0.0 } else { self.to - self.origin };
-        std::array::from_fn(|j| self.rows.mean(last, j) * length - self.passed[j])
+        let means = self.rows.means(last);
+        let mut total = [0.0; L];
+        for j in 0..L {
+            total[j] = means[j] * length - self.passed[j];
+        }
+        total
     }
 
     /// Optical depth from the beginning to a point of the chord, and its slope there.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn point(&self, s: f64) -> Point<L> {
         let distance = s.abs();
         let altitude = self.altitude(distance);
@@ -231,15 +266,19 @@ impl<const L: usize> Chord<'_, L> {
     }
 
     /// A point counted from the line's start, as one at `s` counted from the beginning of the chord.
-    #[inline]
+    #[inline(always)]
     fn seen_from_the_beginning(&self, point: Point<L>, s: f64) -> Point<L> {
         let sign = if s < 0.0 { -1.0 } else { 1.0 };
-        Point { depth: std::array::from_fn(|j| sign * point.depth[j] - self.passed[j]), ..point }
+        let mut point = point;
+        for j in 0..L {
+            point.depth[j] = sign * point.depth[j] - self.passed[j];
+        }
+        point
     }
 
     /// Distance in m from the perigee at which the line passes an altitude in m.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn distance(&self, h: f64) -> f64 {
         let (perigee, radius) = self.perigee;
         match self.columns.shape {
@@ -253,13 +292,13 @@ impl<const L: usize> Chord<'_, L> {
     }
 
     /// Distance of node `k` from the perigee.
-    #[inline]
+    #[inline(always)]
     fn node_distance(&self, k: usize) -> f64 {
         self.distance(self.columns.altitudes.nodes()[k])
     }
 
     /// Cell `k` of this line; the lowest begins where the line does.
-    #[inline]
+    #[inline(always)]
     fn cell(&self, k: usize) -> Cell {
         let nodes = self.columns.altitudes.nodes();
         let (from, to) = (nodes[k], nodes[k + 1]);
@@ -285,16 +324,16 @@ impl<const L: usize> Chord<'_, L> {
         Cell { k, start, skipped, from, per_height, low_length, low_factor, high_length, high_factor }
     }
 
-    /// What the ends of a cell have at wavelength `j`: means, and extinctions.
+    /// What the ends of a cell have: means, and extinctions.
     #[inline(always)]
-    fn ends_of(&self, cell: &Cell, j: usize) -> [f64; 4] {
-        let [at_low, at_high] = &self.columns.extinction[cell.k];
-        let low = if cell.start { self.rows.start(j) } else { self.rows.mean(cell.k, j) };
-        [low, self.rows.mean(cell.k + 1, j), at_low[j], at_high[j]]
+    fn ends_of(&self, cell: &Cell) -> [[f64; L]; 4] {
+        let [at_low, at_high] = self.columns.extinction[cell.k];
+        let low = if cell.start { self.rows.begins() } else { self.rows.means(cell.k) };
+        [low, self.rows.means(cell.k + 1), at_low, at_high]
     }
 
     /// Weights of the mean and of its derivative by the fraction t of a cell, for (low, high, extinction at either).
-    #[inline]
+    #[inline(always)]
     fn weights(cell: &Cell, t: f64) -> [[f64; 4]; 2] {
         let (a, b) = (cell.low_factor, cell.high_factor);
         if cell.skipped > 0.0 {
@@ -311,20 +350,21 @@ impl<const L: usize> Chord<'_, L> {
     }
 
     /// Optical depths from the line's start to a distance from the perigee, where the altitude is `altitude`.
-    #[inline]
+    #[inline(always)]
     fn depths(&self, cell: &Cell, altitude: f64, distance: f64) -> [f64; L] {
         let length = (distance - self.origin - cell.skipped).max(0.0);
         let [value, _] = Self::weights(cell, cell.fraction(altitude));
         let mut depth = [0.0; L];
-        for (j, depth) in depth.iter_mut().enumerate() {
-            let ends = self.ends_of(cell, j);
-            *depth = ends[0] * cell.skipped + length * dot(value, ends);
+        let [low, high, at_low, at_high] = self.ends_of(cell);
+        for j in 0..L {
+            let ends = [low[j], high[j], at_low[j], at_high[j]];
+            depth[j] = ends[0] * cell.skipped + length * dot(value, ends);
         }
         depth
     }
 
     /// As [`Chord::depths`], with the slopes.
-    #[inline]
+    #[inline(always)]
     fn point_of_line(&self, cell: &Cell, altitude: f64, distance: f64) -> Point<L> {
         let length = (distance - self.origin - cell.skipped).max(0.0);
         let [value, derivative] = Self::weights(cell, cell.fraction(altitude));
@@ -335,8 +375,9 @@ impl<const L: usize> Chord<'_, L> {
                 Shape::Sphere { .. } => distance / (self.perigee.1 + (altitude - self.perigee.0)),
             };
         let mut point = Point { depth: [0.0; L], slope: [0.0; L] };
+        let [low, high, at_low, at_high] = self.ends_of(cell);
         for j in 0..L {
-            let ends = self.ends_of(cell, j);
+            let ends = [low[j], high[j], at_low[j], at_high[j]];
             let mean = dot(value, ends);
             point.depth[j] = ends[0] * cell.skipped + mean * length;
             point.slope[j] = mean + dot(derivative, ends) * length * by_distance;
@@ -444,7 +485,7 @@ struct Cell {
 
 impl Cell {
     /// The fraction of the height below an altitude; the upper end of a cell without height.
-    #[inline]
+    #[inline(always)]
     fn fraction(&self, altitude: f64) -> f64 {
         if self.per_height > 0.0 { ((altitude - self.from) * self.per_height).clamp(0.0, 1.0) } else { 1.0 }
     }

@@ -6,12 +6,14 @@
 //! about 25 km, absorbing. Aerosol, in the last case: tau = 0.2 at 550 nm, albedo 0.92, scale height 1.2 km,
 //! Henyey-Greenstein 0.76. All as a table of 200 cells, linear between their centres.
 
+pub mod solved;
+
 use crate::atmosphere::{Columns, Component, Medium, MediumError, Tolerance};
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::phase::Phase;
 use crate::sampling::{POINTS, Sampler};
-use crate::transport::{self, Method, Problem};
+use crate::transport::{self, Estimator, Problem};
 use glam::DVec3;
 use std::time::Instant;
 use tables::units::KM;
@@ -144,7 +146,7 @@ const LONG: u64 = 1024;
 pub fn measure(
     case: &Case,
     (medium, columns): (&Medium<1>, &Columns<1>),
-    method: Method,
+    method: Estimator,
     view: (f64, f64),
     seconds: f64,
 ) -> Cost {

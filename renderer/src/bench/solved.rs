@@ -1,0 +1,165 @@
+//! What solved tables cost, and how far they are from the path tracer.
+
+use crate::atmosphere::{Columns, Tolerance};
+use crate::data::Data;
+use crate::geometry::{Place, Shape};
+use crate::light::SunDisc;
+use crate::render::{RenderError, Sky};
+use crate::sampling::Sampler;
+use crate::scene::Scene;
+use crate::transport::{self, Estimator, Method, Problem, Resolution, Solved};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::time::Instant;
+use tables::units::EARTH_RADIUS_M;
+use tables::views::Biome;
+
+/// Wavelengths in nm: sixteen, evenly over what is seen.
+const WAVELENGTHS: usize = 16;
+
+/// Pixels of the picture's width that is timed.
+const WIDTH: u32 = 320;
+
+/// Directions of the dome: zenith angles in degrees, at this many azimuths each.
+const ZENITHS: [f64; 9] = [2.0, 15.0, 30.0, 45.0, 60.0, 75.0, 83.0, 87.0, 89.5];
+const AZIMUTHS: u32 = 6;
+
+/// An atmosphere's solution.
+#[derive(Debug)]
+pub struct Report {
+    /// Seconds to solve on the current thread pool: with the columns that it needs, and for the finer and the coarser
+    /// table from which its error follows.
+    pub seconds: [f64; 2],
+    /// Orders of scattering, and bytes of the table.
+    pub size: (usize, usize),
+    /// Seconds of one thread for a fisheye of 320 x 320 pixels.
+    pub picture_seconds: f64,
+    /// Of each sun its distance from the path tracer.
+    pub suns: Vec<Distance>,
+}
+
+/// How far the table is from the path tracer over the dome at the ground.
+#[derive(Debug, Clone, Copy)]
+pub struct Distance {
+    /// Zenith angle of the sun in degrees.
+    pub sun_zenith_deg: f64,
+    /// Root mean square of relative differences; the part of it that is the path tracer's noise.
+    pub rms: f64,
+    /// That noise.
+    pub noise: f64,
+    /// Mean of relative differences: what the noise leaves of it is smaller by the root of the number of directions.
+    pub mean: f64,
+    /// Relative difference of the direction in which it is largest, mean over the wavelengths.
+    pub worst: f64,
+    /// Half the table's distance from a coarser one, as it is stated with pictures.
+    pub stated: f64,
+}
+
+/// Solves the atmosphere of a scene with that biome, and compares it for each sun with `paths` paths in each direction
+/// of a dome; the sun is a parallel beam.
+///
+/// # Errors
+/// [`RenderError`] if the data do not have what it takes.
+pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> Result<Report, RenderError> {
+    let scene = Scene { biome, method: Method::Paths, ..Scene::default() };
+    let sky = Sky::new(&scene, data)?;
+    let nm: [f64; WAVELENGTHS] = std::array::from_fn(|i| 380.0 + 400.0 * i as f64 / (WAVELENGTHS - 1) as f64);
+    let shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
+    let (medium, albedo) = (sky.air().medium(&nm)?, [0.1; WAVELENGTHS]);
+    let start = Instant::now();
+    let solved = Solved::new(&medium, shape, albedo, &Resolution::RENDER)?;
+    let first = start.elapsed().as_secs_f64();
+    let coarse = solved.again(&Resolution::COARSE);
+    let seconds = [first, start.elapsed().as_secs_f64()];
+    let from = Place::above(2.0);
+    let camera = Scene { width: Some(WIDTH), height: Some(WIDTH), ..Scene::default() }.camera();
+    let sun = towards(60.0, 0.0);
+    let start = Instant::now();
+    let mut sum = 0.0;
+    for pixel in 0..WIDTH * WIDTH {
+        let (x, y) = (f64::from(pixel % WIDTH) + 0.5, f64::from(pixel / WIDTH) + 0.5);
+        if let Some(direction) = camera.direction(x, y) {
+            sum += solved.radiance(from, direction, sun, false)[0];
+        }
+    }
+    std::hint::black_box(sum);
+    let picture_seconds = start.elapsed().as_secs_f64();
+    let columns = Columns::new(&medium, shape, Tolerance::RENDER);
+    let distances = suns.iter().map(|&sun_zenith_deg| {
+        let sun = towards(sun_zenith_deg, 0.0);
+        let disc = SunDisc::beam(sun);
+        let problem = Problem {
+            shape,
+            medium: &medium,
+            columns: &columns,
+            albedo,
+            sun: Some(&disc),
+            environment: None,
+            max_orders: None,
+        };
+        let directions: Vec<DVec3> = ZENITHS
+            .iter()
+            .flat_map(|&zenith| {
+                (0..AZIMUTHS).map(move |k| towards(zenith, 180.0 * (f64::from(k) + 0.5) / f64::from(AZIMUTHS)))
+            })
+            .collect();
+        let rows: Vec<_> = directions
+            .par_iter()
+            .enumerate()
+            .map(|(pixel, &direction)| {
+                let (mean, variance) = estimate(&problem, from, direction, pixel as u64, paths);
+                let table = solved.radiance(from, direction, sun, false);
+                let relative = |j: usize| table[j] / mean[j] - 1.0;
+                let squares = (0..WAVELENGTHS).map(|j| relative(j).powi(2)).sum::<f64>() / WAVELENGTHS as f64;
+                let noise =
+                    (0..WAVELENGTHS).map(|j| variance[j] / (mean[j] * mean[j])).sum::<f64>() / WAVELENGTHS as f64;
+                let off = (0..WAVELENGTHS).map(relative).sum::<f64>() / WAVELENGTHS as f64;
+                (squares, noise, off)
+            })
+            .collect();
+        let mean = |of: &dyn Fn(&(f64, f64, f64)) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
+        Distance {
+            sun_zenith_deg,
+            rms: mean(&|row| row.0).sqrt(),
+            noise: mean(&|row| row.1).sqrt(),
+            mean: mean(&|row| row.2),
+            worst: rows.iter().map(|row| row.2).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a }),
+            stated: 0.5 * solved.difference(&coarse, from, sun),
+        }
+    });
+    Ok(Report { seconds, size: (solved.convergence().0, solved.bytes()), picture_seconds, suns: distances.collect() })
+}
+
+/// Mean and its variance, from 32 scrambled Sobol sequences.
+fn estimate<const L: usize>(
+    problem: &Problem<'_, L>,
+    from: Place,
+    direction: DVec3,
+    pixel: u64,
+    paths: u64,
+) -> ([f64; L], [f64; L]) {
+    const SEQUENCES: u64 = 32;
+    let points = paths.div_ceil(SEQUENCES);
+    let (mut sums, mut squares) = ([0.0; L], [0.0; L]);
+    for sequence in 0..SEQUENCES {
+        let mut sum = [0.0; L];
+        for point in 0..points {
+            let mut sampler = Sampler::sobol(1, pixel, sequence, point as u32);
+            let radiance = transport::radiance(Estimator::Paths, problem, from, direction, &mut sampler);
+            sum.iter_mut().zip(radiance).for_each(|(sum, one)| *sum += one / points as f64);
+        }
+        for j in 0..L {
+            sums[j] += sum[j];
+            squares[j] += sum[j] * sum[j];
+        }
+    }
+    let n = SEQUENCES as f64;
+    let variance = std::array::from_fn(|j| (squares[j] / n - (sums[j] / n).powi(2)).max(0.0) / (n - 1.0));
+    (sums.map(|sum| sum / n), variance)
+}
+
+/// The direction of a zenith angle and an azimuth from the sun, in degrees.
+fn towards(zenith: f64, azimuth: f64) -> DVec3 {
+    let ((sin, cos), (sin_a, cos_a)) = (zenith.to_radians().sin_cos(), azimuth.to_radians().sin_cos());
+    DVec3::new(sin * cos_a, sin * sin_a, cos)
+}

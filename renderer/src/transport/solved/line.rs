@@ -1,0 +1,197 @@
+//! One line through the shells: where it crosses the levels, and light scattered into it, weighted and attenuated.
+
+use super::species::Species;
+use crate::atmosphere::{Chord, Medium};
+use crate::vectors::exp_minus;
+
+/// A crossing of a line with a level.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Crossing {
+    /// Which level.
+    pub(super) level: usize,
+    /// Distance from the line's perigee in m, as points of a [`Chord`] are named.
+    pub(super) s: f64,
+}
+
+/// Crossings nearer to each other than this, in m, are one.
+const SAME_M: f64 = 1e-2;
+
+/// The crossings of the chord's line with the `levels` (altitudes in m) between `from` and the chord's end, in order.
+pub(super) fn crossings<const L: usize>(chord: &Chord<'_, L>, levels: &[f64], from: f64) -> Vec<Crossing> {
+    let mut all: Vec<Crossing> = Vec::with_capacity(2 * levels.len());
+    let (_, to) = chord.ends();
+    let mut push = |level: usize, s: f64| {
+        if s >= from - SAME_M && s <= to + SAME_M && all.last().is_none_or(|last| s > last.s + SAME_M) {
+            all.push(Crossing { level, s });
+        }
+    };
+    let perigee = chord.perigee();
+    if from < 0.0 {
+        for (level, &h) in levels.iter().enumerate().rev().filter(|(_, h)| **h >= perigee) {
+            push(level, -chord.distance(h));
+        }
+    }
+    if to > 0.0 {
+        for (level, &h) in levels.iter().enumerate().filter(|(_, h)| **h >= perigee) {
+            push(level, chord.distance(h));
+        }
+    }
+    all
+}
+
+/// Lagrange's polynomial through up to four of the places around an interval.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stencil {
+    /// The first of them.
+    pub(super) first: usize,
+    /// How many, at least one.
+    pub(super) count: usize,
+}
+
+impl Stencil {
+    /// Around the interval between places `i` and `i + 1` of `all`.
+    pub(super) fn around(i: usize, all: usize) -> Self {
+        let count = all.min(4);
+        Self { first: i.saturating_sub(1).min(all - count), count }
+    }
+
+    /// Weights at `s`.
+    #[inline(always)]
+    pub(super) fn weights(self, places: &[Crossing], s: f64) -> [f64; 4] {
+        let places = &places[self.first..self.first + self.count];
+        let mut weights = [0.0; 4];
+        if let [a, b, c, d] = places {
+            let [a, b, c, d] = [a.s, b.s, c.s, d.s];
+            let [u, v, w, x] = [s - a, s - b, s - c, s - d];
+            return [
+                v * w * x / ((a - b) * (a - c) * (a - d)),
+                u * w * x / ((b - a) * (b - c) * (b - d)),
+                u * v * x / ((c - a) * (c - b) * (c - d)),
+                u * v * w / ((d - a) * (d - b) * (d - c)),
+            ];
+        }
+        for (k, weight) in weights.iter_mut().enumerate().take(self.count) {
+            let others = places.iter().enumerate().filter(|(i, _)| *i != k);
+            *weight = others.map(|(_, other)| (s - other.s) / (places[k].s - other.s)).product();
+        }
+        weights
+    }
+}
+
+/// What becomes of the points of a quadrature along a chord. (No closure, since those are not always inlined.)
+pub(super) trait Take<const L: usize> {
+    /// A point, and of each species the weight of the point in m, times the transmittance to the chord's beginning, times the
+    /// scattering coefficient.
+    fn take(&mut self, s: f64, scattered: &[[f64; L]]);
+}
+
+/// Takes the sum over all points.
+pub(super) struct Sum<'a, const L: usize>(pub(super) &'a mut [[f64; L]]);
+
+impl<const L: usize> Take<L> for Sum<'_, L> {
+    #[inline(always)]
+    fn take(&mut self, _s: f64, scattered: &[[f64; L]]) {
+        for (sum, one) in self.0.iter_mut().zip(scattered) {
+            for j in 0..L {
+                sum[j] += one[j];
+            }
+        }
+    }
+}
+
+/// Takes the sum over all points times Lagrange's polynomials through the crossings around an interval: weights of the
+/// crossings in the integral of what lies between.
+pub(super) struct Spread<'a, const L: usize> {
+    pub(super) places: &'a [Crossing],
+    pub(super) stencil: Stencil,
+    /// Of each crossing in turn those of each species.
+    pub(super) weights: &'a mut [[f64; L]],
+}
+
+impl<const L: usize> Take<L> for Spread<'_, L> {
+    #[inline(always)]
+    fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
+        let lagrange = self.stencil.weights(self.places, s);
+        let nodes = self.weights.chunks_exact_mut(scattered.len()).skip(self.stencil.first);
+        for (node, share) in nodes.take(self.stencil.count).zip(lagrange) {
+            for (sum, one) in node.iter_mut().zip(scattered) {
+                for j in 0..L {
+                    sum[j] += share * one[j];
+                }
+            }
+        }
+    }
+}
+
+/// How an interval is integrated.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rule {
+    /// With Gauss' rule of four nodes rather than two.
+    pub(super) fine: bool,
+    /// The least number of parts of the interval.
+    pub(super) least: f64,
+}
+
+/// Transmittance below which nothing more is looked for.
+const DARK: f64 = 1e-9;
+
+/// Most parts that an interval is divided into for its optical depth, and how much of it a part may have.
+const MOST_PARTS: (f64, f64) = (8.0, 0.8);
+
+/// Gauss' rule with two nodes on 0 to 1.
+const GAUSS_2: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
+
+/// Gauss' rule with four nodes on 0 to 1.
+const GAUSS_4: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_7, 0.173_927_422_568_726_9),
+    (0.330_009_478_207_571_9, 0.326_072_577_431_273_1),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_1),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_9),
+];
+
+/// Gives `take` the points of Gauss' rule (four nodes, or two) in the interval `from` to `to` of a chord, divided
+/// into parts, more where it is optically thick. False once it is too dark for anything to arrive.
+#[inline(always)]
+pub(super) fn quadrature<const L: usize>(
+    chord: &Chord<'_, L>,
+    medium: &Medium<L>,
+    species: &[Species<L>],
+    (from, to): (f64, f64),
+    Rule { fine, least }: Rule,
+    take: &mut impl Take<L>,
+) -> bool {
+    let (start, end) = (chord.point(from).depth, chord.point(to).depth);
+    let mut thick = 0.0_f64;
+    let mut lit = false;
+    for (start, end) in start.iter().zip(end) {
+        if (-start).exp() > DARK {
+            lit = true;
+            thick = thick.max((end - start).min(12.0));
+        }
+    }
+    if !lit {
+        return false;
+    }
+    let (most, each) = MOST_PARTS;
+    let parts = (thick / each).ceil().max(least).clamp(1.0, most);
+    let mut scattered = [[0.0; L]; MOST_SPECIES];
+    let step = (to - from) / parts;
+    let rule: &[(f64, f64)] = if fine { &GAUSS_4 } else { &GAUSS_2 };
+    for part in 0..parts as u32 {
+        let begin = from + step * f64::from(part);
+        for &(x, weight) in rule {
+            let s = begin + step * x;
+            let through = exp_minus(chord.point(s).depth);
+            let densities = medium.densities_at(chord.altitude(s));
+            for (row, one) in scattered.iter_mut().zip(species) {
+                let factor = weight * step * densities[one.component];
+                *row = std::array::from_fn(|j| factor * one.scattering[j] * through[j]);
+            }
+            take.take(s, &scattered[..species.len()]);
+        }
+    }
+    true
+}
+
+/// The most species that scatter.
+pub(super) const MOST_SPECIES: usize = crate::atmosphere::MAX_COMPONENTS;

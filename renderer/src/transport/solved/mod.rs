@@ -1,0 +1,259 @@
+//! Solved tables: the diffuse field of a spherically symmetric atmosphere, once for every sun and observer.
+//!
+//! In concentric shells over a uniform ground the diffuse radiance at a place depends on its altitude h and on the
+//! zenith angle chi of the sun there; where the place lies does not matter otherwise. And of its dependence on direction
+//! scattering keeps only the moments that the phase functions have: with P_s(c) = sum_l b_l P_l(c) of species s,
+//!
+//! J(omega) = sum_s k_s(h) sum_l b_l sum_m S_lm(mu) cos(m phi) I_lm(h, chi),  I_lm = int L S_lm(mu) cos(m phi) d omega
+//!
+//! is what a metre of air sends into the direction looked in (mu the cosine of its zenith angle, phi its azimuth from the
+//! sun's, k_s the scattering coefficient; mirror symmetry leaves the cosines). For molecules these are four numbers, and exact. The table
+//! holds them at some altitudes and suns, together with the irradiance of the ground; the field follows order after order:
+//! the moments of one are integrated along lines in all directions, and give those of the next.
+//!
+//! What is seen is integrated along the line of sight: sunlight scattered once with the phase functions themselves, and the
+//! table's sources. Radiance is never interpolated.
+
+mod first;
+mod grid;
+mod harmonics;
+mod line;
+mod mix;
+mod orders;
+mod rays;
+mod species;
+#[cfg(test)]
+mod tests;
+mod view;
+
+pub use grid::Resolution;
+
+use crate::atmosphere::{Columns, Medium, MediumError, Tolerance};
+use crate::geometry::{Place, Shape};
+use crate::vectors::vectorised;
+use first::{Scattering, Sunlight};
+use glam::DVec3;
+use grid::Grid;
+use harmonics::Moments;
+use mix::Mixer;
+use orders::{Around, Field};
+use pulp::NullaryFnOnce;
+use rayon::prelude::*;
+use rays::Line;
+use species::Species;
+use std::f64::consts::FRAC_1_PI;
+use std::sync::Arc;
+
+/// Why a scene has no solved table.
+#[derive(Debug, thiserror::Error)]
+pub enum SolveError {
+    /// The method does not cover it.
+    #[error("{0}")]
+    Refused(&'static str),
+    /// The atmosphere without its forward peaks is impossible.
+    #[error(transparent)]
+    Medium(#[from] MediumError),
+}
+
+/// The diffuse field of an atmosphere over a uniform ground, at `L` wavelengths.
+#[derive(Debug)]
+pub struct Solved<const L: usize> {
+    optics: Arc<Optics<L>>,
+    grid: Grid,
+    field: Field<L>,
+    orders: usize,
+    residual: f64,
+}
+
+/// An atmosphere without its forward peaks, over a uniform ground.
+#[derive(Debug)]
+struct Optics<const L: usize> {
+    moments: Moments,
+    species: Vec<Species<L>>,
+    medium: Medium<L>,
+    columns: Columns<L>,
+    albedo: [f64; L],
+}
+
+/// What all parts of the solution share.
+struct Setup<'a, const L: usize> {
+    grid: &'a Grid,
+    moments: &'a Moments,
+    species: &'a [Species<L>],
+    medium: &'a Medium<L>,
+    columns: &'a Columns<L>,
+    albedo: &'a [f64; L],
+}
+
+impl Resolution {
+    /// What the renderer takes.
+    pub const RENDER: Self = Self { levels: 22, suns: 40, zeniths: [7, 4, 5], parts: 5, degree: 14 };
+
+    /// A coarser one, whose distance from [`Resolution::RENDER`] tells how far that is from the truth.
+    pub const COARSE: Self = Self { levels: 16, suns: 33, zeniths: [5, 3, 4], parts: 4, degree: 14 };
+}
+
+/// Relative change of the field by another order below which it counts as solved.
+const SOLVED: f64 = 5e-4;
+
+/// The most orders.
+const MOST_ORDERS: usize = 60;
+
+impl<const L: usize> Solved<L> {
+    /// Solves for `medium` over a planet of that shape whose ground has the Lambertian `albedo`.
+    ///
+    /// # Errors
+    /// [`SolveError::Refused`] between planes.
+    pub fn new(
+        medium: &Medium<L>,
+        shape: Shape,
+        albedo: [f64; L],
+        resolution: &Resolution,
+    ) -> Result<Self, SolveError> {
+        let Shape::Sphere { radius_m } = shape else {
+            return Err(SolveError::Refused("solved tables need a round planet: take --method paths"));
+        };
+        let degree = species::degree_of(medium, resolution.degree);
+        let (species, medium) = species::scaled(medium, degree)?;
+        let columns = Columns::new(&medium, shape, Tolerance::RENDER);
+        let optics = Optics { moments: Moments::new(degree), species, medium, columns, albedo };
+        Ok(Self::with(Arc::new(optics), radius_m, resolution))
+    }
+
+    fn with(optics: Arc<Optics<L>>, radius: f64, resolution: &Resolution) -> Self {
+        let Optics { moments, species, medium, columns, albedo } = &*optics;
+        let grid = Grid::new(medium, radius, resolution);
+        let setup = Setup { grid: &grid, moments, species, medium, columns, albedo };
+        let (field, orders, residual) = setup.solve(resolution);
+        Self { optics, grid, field, orders, residual }
+    }
+
+    /// The same atmosphere solved again, with as many moments, on another grid.
+    #[must_use]
+    pub fn again(&self, resolution: &Resolution) -> Self {
+        Self::with(Arc::clone(&self.optics), self.grid.radius, resolution)
+    }
+
+    /// Root mean square over 64 directions and all wavelengths of the difference to the radiances of another solution of the same
+    /// atmosphere, over their mean at the wavelength, at an observer with the sun in that unit direction. 0 where it is dark.
+    #[must_use]
+    pub fn difference(&self, other: &Self, from: Place, sun: DVec3) -> f64 {
+        const DIRECTIONS: u32 = 64;
+        let (mut squares, mut means) = ([0.0; L], [0.0; L]);
+        for i in 0..DIRECTIONS {
+            // Even in solid angle, by steps of the golden angle.
+            let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(DIRECTIONS);
+            let (sin, cos) = (f64::from(i) * 2.399_963_229_728_653).sin_cos();
+            let level = (1.0 - z * z).sqrt();
+            let direction = DVec3::new(level * cos, level * sin, z);
+            let [a, b] = [self, other].map(|solved| solved.radiance(from, direction, sun, false));
+            for j in 0..L {
+                squares[j] += (a[j] - b[j]).powi(2) / f64::from(DIRECTIONS);
+                means[j] += a[j] / f64::from(DIRECTIONS);
+            }
+        }
+        let lit = squares.iter().zip(means).filter(|(_, mean)| *mean > 0.0);
+        let sum: f64 = lit.map(|(square, mean)| square / (mean * mean)).sum();
+        (sum / L as f64).sqrt()
+    }
+
+    /// Orders of scattering that were computed, and the relative change that the last of them made.
+    #[must_use]
+    pub fn convergence(&self) -> (usize, f64) {
+        (self.orders, self.residual)
+    }
+
+    /// Bytes of the moments.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        4 * L * (self.field.moments.len() + self.field.ground.len())
+    }
+}
+
+impl<const L: usize> Setup<'_, L> {
+    fn solve(&self, resolution: &Resolution) -> (Field<L>, usize, f64) {
+        let levels = self.grid.levels.len();
+        let lines: Vec<_> = (0..levels)
+            .into_par_iter()
+            .map(|level| rays::lines(self, level, &self.grid.zeniths(level, resolution.zeniths)))
+            .collect();
+        let sunlight = Sunlight::new(self, resolution.parts);
+        let scattering = Scattering::new(self);
+        let collect = |at: &(dyn Fn(usize) -> Moved<L> + Sync)| {
+            let mut parts: Vec<_> = (0..levels).into_par_iter().map(at).collect();
+            let ground = std::mem::take(&mut parts[0].1);
+            Field { moments: parts.into_iter().flat_map(|(moments, _)| moments).collect(), ground }
+        };
+        let first = collect(&|level| {
+            vectorised(First { setup: self, level, lines: &lines[level], sunlight: &sunlight, scattering: &scattering })
+        });
+        let reflected = self.albedo.map(|a| (a * FRAC_1_PI) as f32);
+        let step = |field: &Field<L>| {
+            collect(&|level| {
+                let (moments, suns) = (self.moments, &self.grid.suns);
+                vectorised(Next { around: Around { lines: &lines[level], moments, suns, reflected }, field })
+            })
+        };
+        let mut mixer = Mixer::new(&first, self.moments.count());
+        let mut field = first.clone();
+        let mut orders = 1;
+        loop {
+            let mut next = step(&field);
+            orders += 1;
+            add(&mut next, &first);
+            let residual = mixer.change(&field, &next);
+            field = mixer.mix(field, next);
+            if residual <= SOLVED || orders >= MOST_ORDERS {
+                return (field, orders, residual);
+            }
+        }
+    }
+}
+
+/// Moments at a level, and irradiance from above.
+type Moved<const L: usize> = (Vec<[f32; L]>, Vec<[f32; L]>);
+
+/// The first order at one level.
+struct First<'a, const L: usize> {
+    setup: &'a Setup<'a, L>,
+    level: usize,
+    lines: &'a [Line<L>],
+    sunlight: &'a Sunlight<L>,
+    scattering: &'a Scattering<L>,
+}
+
+impl<const L: usize> NullaryFnOnce for First<'_, L> {
+    type Output = Moved<L>;
+
+    #[inline(always)]
+    fn call(self) -> Moved<L> {
+        let Self { setup, level, lines, sunlight, scattering } = self;
+        if setup.moments.degree() > 2 {
+            first::scatter::<L, 16>(setup, level, lines, sunlight, scattering)
+        } else {
+            first::scatter::<L, 8>(setup, level, lines, sunlight, scattering)
+        }
+    }
+}
+
+/// Another order at one level.
+struct Next<'a, const L: usize> {
+    around: Around<'a, L>,
+    field: &'a Field<L>,
+}
+
+impl<const L: usize> NullaryFnOnce for Next<'_, L> {
+    type Output = Moved<L>;
+
+    #[inline(always)]
+    fn call(self) -> Moved<L> {
+        self.around.scatter::<8>(self.field)
+    }
+}
+
+fn add<const L: usize>(field: &mut Field<L>, other: &Field<L>) {
+    let all = field.moments.iter_mut().chain(&mut field.ground).zip(other.moments.iter().chain(&other.ground));
+    for (a, b) in all.flat_map(|(a, b)| a.iter_mut().zip(b)) {
+        *a += b;
+    }
+}

@@ -1,0 +1,287 @@
+//! What is seen: sunlight scattered once and the table's sources, integrated along the line of sight.
+
+use super::Solved;
+use super::grid::Between;
+use super::harmonics::RAYLEIGH;
+use super::line::{Crossing, MOST_SPECIES, Rule, Spread, Stencil, Take, crossings, quadrature};
+use super::rays::FAINT;
+use super::species::Species;
+use crate::atmosphere::Chord;
+use crate::geometry::{Place, Shape};
+use crate::light::SunDisc;
+use crate::vectors::{exp_minus, vectorised};
+use glam::DVec3;
+use pulp::NullaryFnOnce;
+use std::f64::consts::FRAC_1_PI;
+
+impl<const L: usize> Solved<L> {
+    /// Radiance per unit solar irradiance (sr^-1) that arrives at `from` out of the unit `direction` (the direction looked in)
+    /// with the sun, a parallel beam, in the unit direction `sun`; without the sun itself. With `single`, of sunlight
+    /// scattered or reflected once.
+    #[must_use]
+    pub fn radiance(&self, from: Place, direction: DVec3, sun: DVec3, single: bool) -> [f64; L] {
+        vectorised(Look { solved: self, from, direction, sun, single })
+    }
+
+    /// As [`Solved::radiance`], of all light, with the sun as a disc. Where it is low its upper and lower parts lie differently
+    /// deep in twilight: two suns as far above and below its centre as the disc spreads give the mean to fourth order.
+    #[must_use]
+    pub fn radiance_of_disc(&self, from: Place, direction: DVec3, sun: &SunDisc<L>) -> [f64; L] {
+        let centre = sun.direction();
+        let high = from.altitude_m < DEEP * self.optics.medium.top_m() && centre.dot(from.up) > HIGH_SUN;
+        let across = centre.cross(from.up).try_normalize();
+        let (false, Some(across)) = (high, across) else {
+            return self.radiance(from, direction, centre, false);
+        };
+        let (sin, cos) = sun.spread().sqrt().sin_cos();
+        let upwards = across.cross(centre) * sin;
+        let [a, b] = [upwards, -upwards].map(|off| self.radiance(from, direction, centre * cos + off, false));
+        std::array::from_fn(|j| 0.5 * (a[j] + b[j]))
+    }
+
+    #[inline(always)]
+    fn look(&self, from: Place, direction: DVec3, sun: DVec3, single: bool) -> [f64; L] {
+        let mut sum = [0.0; L];
+        let Some(chord) = self.optics.columns.chord(from, direction) else { return sum };
+        let (begin, end) = chord.ends();
+        let sight = Sight { solved: self, chord: &chord, from, direction, sun };
+        let towards = direction.dot(sun);
+        // All crossings of the line, so that the polynomials also reach over the observer.
+        // The other side of a line that cuts the planet is beyond it.
+        let backwards = if begin < 0.0 || chord.perigee() >= 0.0 { f64::NEG_INFINITY } else { 0.0 };
+        let places = crossings(&chord, &self.grid.levels, backwards);
+        let species = &self.optics.species;
+        let mut weights = vec![[0.0; L]; species.len() * places.len()];
+        let mut phases = [[0.0; L]; MOST_SPECIES];
+        for (phase, one) in phases.iter_mut().zip(species) {
+            let values = one.phase.values(towards);
+            *phase = std::array::from_fn(|j| values[j] * one.whole[j]);
+        }
+        // Four nodes of Gauss' rule where the line passes through the air in front of space, or two.
+        let fine = chord.perigee() > 0.0 && begin < 0.0;
+        let [edge, other] = sight.shadow_edges();
+        let mut cuts = [edge, other, 0.0];
+        cuts.sort_by(f64::total_cmp);
+        'line: for i in 0..places.len().saturating_sub(1) {
+            let (mut a, end) = (places[i].s.max(begin), places[i + 1].s.min(end));
+            let stencil = Stencil::around(i, places.len());
+            let mut taker = Taker {
+                sight: &sight,
+                phases: &phases,
+                spread: (!single).then_some(Spread { places: &places, stencil, weights: &mut weights }),
+                sum: &mut sum,
+            };
+            for b in cuts.into_iter().chain([end]) {
+                let b = b.min(end);
+                if b > a {
+                    let rule = Rule { fine, least: sight.parts(a, b) };
+                    if !quadrature(&chord, &self.optics.medium, species, (a, b), rule, &mut taker) {
+                        break 'line;
+                    }
+                    a = b;
+                }
+            }
+        }
+        if !single {
+            for (place, weights) in places.iter().zip(weights.chunks_exact(species.len().max(1))) {
+                sight.add_sources(place, weights, towards, &mut sum);
+            }
+        }
+        if chord.ends_on_ground() {
+            let through = exp_minus(chord.total());
+            let mut foot = sight.place(end);
+            foot.altitude_m = 0.0;
+            let light = self.ground_irradiance(foot, sun, single);
+            for j in 0..L {
+                sum[j] += through[j] * self.optics.albedo[j] * FRAC_1_PI * light[j];
+            }
+        }
+        sum
+    }
+
+    /// Irradiance of the ground at a place of it, by the sun and, but for `single`, by all other light.
+    fn ground_irradiance(&self, foot: Place, sun: DVec3, single: bool) -> [f64; L] {
+        let cosine = foot.up.dot(sun);
+        let mut light = [0.0; L];
+        if !single {
+            let Between { first: [first], weights } = self.grid.suns.locate(&[cosine as f32]);
+            for (row, weight) in self.field.ground[first as usize..].iter().zip(weights) {
+                for j in 0..L {
+                    light[j] += f64::from(weight[0] * row[j]);
+                }
+            }
+        }
+        if cosine > 0.0
+            && let Some(through) = self.optics.columns.transmittance(foot, sun)
+        {
+            for j in 0..L {
+                light[j] += cosine * through[j];
+            }
+        }
+        light
+    }
+}
+
+/// Sine of an elevation above which the sun is as good as a point, for observers within this share of the height of the
+/// atmosphere.
+const HIGH_SUN: f64 = 0.2;
+const DEEP: f64 = 0.2;
+
+/// A look along a line of sight.
+struct Look<'a, const L: usize> {
+    solved: &'a Solved<L>,
+    from: Place,
+    direction: DVec3,
+    sun: DVec3,
+    single: bool,
+}
+
+impl<const L: usize> NullaryFnOnce for Look<'_, L> {
+    type Output = [f64; L];
+
+    #[inline(always)]
+    fn call(self) -> [f64; L] {
+        self.solved.look(self.from, self.direction, self.sun, self.single)
+    }
+}
+
+/// Takes sunlight scattered once, and the weights of the table's sources.
+struct Taker<'a, const L: usize> {
+    sight: &'a Sight<'a, L>,
+    phases: &'a [[f64; L]; MOST_SPECIES],
+    spread: Option<Spread<'a, L>>,
+    sum: &'a mut [f64; L],
+}
+
+impl<const L: usize> Take<L> for Taker<'_, L> {
+    #[inline(always)]
+    fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
+        if let Some(spread) = &mut self.spread {
+            spread.take(s, scattered);
+        }
+        let Some(through) = self.sight.solved.optics.columns.transmittance(self.sight.place(s), self.sight.sun) else {
+            return;
+        };
+        for (phase, scattered) in self.phases.iter().zip(scattered) {
+            for j in 0..L {
+                self.sum[j] += phase[j] * scattered[j] * through[j];
+            }
+        }
+    }
+}
+
+/// Change of the altitude at which sunlight passes the planet, in one part of a line, as a share of that of the top.
+const PASSES: f64 = 0.02;
+
+/// A line of sight with a sun.
+struct Sight<'a, const L: usize> {
+    solved: &'a Solved<L>,
+    chord: &'a Chord<'a, L>,
+    from: Place,
+    direction: DVec3,
+    sun: DVec3,
+}
+
+impl<const L: usize> Sight<'_, L> {
+    #[inline(always)]
+    fn place(&self, s: f64) -> Place {
+        let shape = Shape::Sphere { radius_m: self.solved.grid.radius };
+        let mut place = self.from.advance(shape, self.direction, self.chord.travelled(s));
+        place.altitude_m = place.altitude_m.clamp(0.0, self.solved.optics.medium.top_m());
+        place
+    }
+
+    /// Where the line passes the surface of the planet's shadow, a cylinder about the axis to the sun:
+    /// |p|^2 - (p . sun)^2 = R^2, a quadratic in the distance from the perigee. Infinite where it does not.
+    fn shadow_edges(&self) -> [f64; 2] {
+        let r = self.solved.grid.radius;
+        let start = self.from.up * (r + self.from.altitude_m);
+        let perigee = start + self.direction * self.chord.travelled(0.0);
+        let across = perigee - self.sun * perigee.dot(self.sun);
+        let along = self.direction - self.sun * self.direction.dot(self.sun);
+        let (a, b) = (along.length_squared(), across.dot(along));
+        let c = across.length_squared() - r * r;
+        let root = b * b - a * c;
+        if a < 1e-12 || root < 0.0 {
+            return [f64::INFINITY; 2];
+        }
+        let root = root.sqrt();
+        [(-b - root) / a, (-b + root) / a]
+    }
+
+    /// How many parts of an interval the sun asks for: its light passes by the planet at an altitude that may change fast.
+    fn parts(&self, a: f64, b: f64) -> f64 {
+        let r = self.solved.grid.radius;
+        let start = self.from.up * (r + self.from.altitude_m);
+        let passes = |s: f64| {
+            let position = start + self.direction * self.chord.travelled(s);
+            let along = position.dot(self.sun);
+            let radius = position.length();
+            (along < 0.1 * radius, (position - self.sun * along).length())
+        };
+        let ((low_a, at_a), (low_b, at_b)) = (passes(a), passes(b));
+        let turns = a.abs().min(b.abs()) < 1.0 && a.abs().max(b.abs()) > 2e4;
+        let least = if turns { 3.0 } else { 1.0 };
+        if low_a || low_b {
+            ((at_a - at_b).abs() / (PASSES * self.solved.optics.medium.top_m())).ceil().max(least)
+        } else {
+            least
+        }
+    }
+
+    /// Adds the sources at a crossing, with the weights of the species there.
+    #[inline(always)]
+    fn add_sources(&self, place: &Crossing, weights: &[[f64; L]], towards: f64, sum: &mut [f64; L]) {
+        let solved = self.solved;
+        let largest = weights.iter().flatten().fold(0.0_f64, |most, w| most.max(w.abs()));
+        if largest == 0.0 {
+            return;
+        }
+        let r = solved.grid.level_radius(place.level);
+        let start = self.from.up * (solved.grid.radius + self.from.altitude_m);
+        let position = start + self.direction * self.chord.travelled(place.s);
+        let there = (position.dot(self.sun) / r).clamp(-1.0, 1.0);
+        let zenith = (place.s / r).clamp(-1.0, 1.0);
+        let Between { first: [first], weights: lagrange } = solved.grid.suns.locate(&[there as f32]);
+        let lagrange = lagrange.map(|weight| weight[0]);
+        if lagrange == [0.0; 4] {
+            return;
+        }
+        let across = ((1.0 - zenith) * (1.0 + zenith) * (1.0 - there) * (1.0 + there)).max(0.0).sqrt();
+        let turn = if across > 1e-9 { ((towards - zenith * there) / across).clamp(-1.0, 1.0) } else { 1.0 };
+        let mut harmonics = Vec::new();
+        solved.optics.moments.at(zenith, &mut harmonics);
+        let peaked = |one: &Species<L>, weights: &[f64; L]| {
+            !one.is_molecular() && weights.iter().any(|w| w.abs() > FAINT * largest)
+        };
+        let all = solved.optics.species.iter().zip(weights).any(|(one, weights)| peaked(one, weights));
+        let count = if all { solved.optics.moments.count() } else { RAYLEIGH };
+        let degree = if all { solved.optics.moments.degree() } else { 2 };
+        let mut sources = [[0.0; L]; super::harmonics::MOST_DEGREE + 1];
+        for (l, source) in sources.iter_mut().enumerate().take(degree + 1) {
+            for (one, weights) in solved.optics.species.iter().zip(weights) {
+                for j in 0..L {
+                    source[j] += weights[j] * one.coefficients[l][j];
+                }
+            }
+        }
+        let mut cosines = [1.0; super::harmonics::MOST_DEGREE + 1];
+        cosines[1] = turn;
+        for m in 2..=degree {
+            cosines[m] = 2.0 * turn * cosines[m - 1] - cosines[m - 2];
+        }
+        let (suns, moments) = (solved.grid.suns.count(), solved.optics.moments.count());
+        let from = (place.level * suns + first as usize) * moments;
+        let rows = &solved.field.moments[from..from + 4 * moments];
+        for (index, &(l, m)) in solved.optics.moments.pairs()[..count].iter().enumerate() {
+            let factor = harmonics[index] * cosines[m];
+            for j in 0..L {
+                let mut moment = 0.0;
+                for (k, weight) in lagrange.iter().enumerate() {
+                    moment += weight * rows[k * moments + index][j];
+                }
+                sum[j] += factor * sources[l][j] * f64::from(moment);
+            }
+        }
+    }
+}
