@@ -67,6 +67,14 @@ struct Span {
 }
 
 impl Span {
+    /// Derivative of the density by the fraction of the interval.
+    fn slope(self, fraction: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => self.rise,
+            Scale::Logarithmic => self.rise * self.at(fraction),
+        }
+    }
+
     fn at(self, fraction: f64) -> f64 {
         match self.scale {
             Scale::Linear => self.bottom + fraction * self.rise,
@@ -209,6 +217,25 @@ impl<const L: usize> Medium<L> {
     /// Ends of the intervals in m: every profile is linear or exponential between two of them.
     pub(super) fn nodes(&self) -> &[f64] {
         &self.nodes
+    }
+
+    /// Altitudes in m at which the density of a scatterer bends: its slope changes, over the shorter of the two intervals that meet
+    /// there, by more than a fiftieth of the largest density around, of a scatterer that makes a thousandth of all or more.
+    #[must_use]
+    pub fn bends(&self) -> Vec<f64> {
+        let count = self.components.len();
+        let sigma: Vec<f64> = self.components.iter().map(|c| c.scattering.iter().sum()).collect();
+        let bends = |i: usize| {
+            let (low, high) = (self.nodes[i] - self.nodes[i - 1], self.nodes[i + 1] - self.nodes[i]);
+            let spans = |k: usize| &self.spans[k * count..(k + 1) * count];
+            let total: f64 = spans(i).iter().zip(&sigma).map(|(span, sigma)| span.at(0.0).max(0.0) * sigma).sum();
+            spans(i - 1).iter().zip(spans(i)).zip(&sigma).any(|((below, above), sigma)| {
+                let most = below.at(0.0).max(above.at(0.0)).max(above.at(1.0));
+                let change = (above.slope(0.0) / high - below.slope(1.0) / low) * low.min(high);
+                *sigma > 0.0 && most * sigma > 1e-3 * total && change.abs() > 0.02 * most
+            })
+        };
+        (1..self.nodes.len() - 1).filter(|&i| bends(i)).map(|i| self.nodes[i]).collect()
     }
 
     /// Altitudes in m at which the density of a scatterer jumps by more than a hundredth of itself.

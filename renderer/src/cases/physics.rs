@@ -6,7 +6,7 @@ use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::phase::Phase;
 use crate::sampling::{Sampler, cosine_hemisphere};
-use crate::transport::{self, Estimator, Method, Problem, Resolution, Solved};
+use crate::transport::{self, Estimator, Method, Problem, Resolution, SolveError, Solved};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -31,11 +31,32 @@ pub(super) struct Estimand {
     f0: f64,
 }
 
+/// Relative error of what solved tables have in common with coarser ones, of single scattering and of all orders.
+const UNSEEN: (f64, f64) = (2e-4, 5e-4);
+
 /// What a radiance is found with.
 #[derive(Debug)]
 enum Tables {
     Columns(Estimator, Arc<Columns<1>>),
-    Solved(Arc<Solved<1>>),
+    Solved(Arc<Pair>),
+}
+
+/// A solved table, and a coarser one that tells how exact it is; none of single scattering.
+#[derive(Debug)]
+struct Pair {
+    solved: Solved<1>,
+    coarse: Option<Solved<1>>,
+}
+
+impl Pair {
+    fn new(medium: &Medium<1>, shape: Shape, albedo: f64, single: bool) -> Result<Self, SolveError> {
+        if single {
+            return Ok(Self { solved: Solved::single(medium, shape, [albedo])?, coarse: None });
+        }
+        let solved = Solved::new(medium, shape, [albedo], &Resolution::FINE)?;
+        let coarse = solved.again(&Resolution::RENDER);
+        Ok(Self { solved, coarse: Some(coarse) })
+    }
 }
 
 /// What is asked at the place.
@@ -69,6 +90,31 @@ impl Estimand {
         self.f0
     }
 
+    /// The value with its error, if the case is solved rather than sampled.
+    pub(super) fn solution(&self) -> Option<(f64, f64)> {
+        match (&self.tables, self.quantity) {
+            (Tables::Solved(pair), Quantity::Radiance(direction)) => Some(self.solved(pair, direction)),
+            _ => None,
+        }
+    }
+
+    /// A radiance from solved tables, and its error: half the distance from the coarser one, and [`UNSEEN`].
+    fn solved(&self, pair: &Pair, direction: DVec3) -> (f64, f64) {
+        let look = |solved: &Solved<1>, single: bool| {
+            self.f0 * solved.radiance(self.place, direction, self.sun.direction(), single)[0]
+        };
+        match &pair.coarse {
+            None => {
+                let value = look(&pair.solved, true);
+                (value, UNSEEN.0 * value)
+            }
+            Some(coarse) => {
+                let value = look(&pair.solved, false);
+                (value, (0.5 * (value - look(coarse, false))).hypot(UNSEEN.1 * value))
+            }
+        }
+    }
+
     /// mu_0 exp(-tau) F_0 at the place.
     fn direct(&self) -> f64 {
         let sun = self.sun.direction();
@@ -96,11 +142,7 @@ impl Estimand {
 
     fn radiance(&self, direction: DVec3, sampler: &mut Sampler) -> f64 {
         let (estimator, columns) = match &self.tables {
-            Tables::Solved(solved) => {
-                let single = self.max_orders == Some(1);
-                let [radiance] = solved.radiance(self.place, direction, self.sun.direction(), single);
-                return self.f0 * radiance;
-            }
+            Tables::Solved(pair) => return self.solved(pair, direction).0,
             Tables::Columns(estimator, columns) => (*estimator, columns),
         };
         let problem = Problem {
@@ -122,7 +164,7 @@ impl Estimand {
 #[derive(Debug, Default)]
 pub(super) struct Shared {
     columns: BTreeMap<(String, u64), Arc<Columns<1>>>,
-    solved: BTreeMap<(String, u64, u64, String), Arc<Solved<1>>>,
+    solved: BTreeMap<(String, u64, u64, String), Arc<Pair>>,
 }
 
 impl Shared {
@@ -132,7 +174,8 @@ impl Shared {
     }
 
     fn ground_key(case: &Case) -> Option<(String, u64, u64, String)> {
-        let phase = format!("{:?}", case.phase);
+        // Whatever else a solution depends on.
+        let phase = format!("{:?} {}", case.phase, case.orders);
         Self::key(case).map(|(profile, radius)| (profile, radius, case.albedo.to_bits(), phase))
     }
 
@@ -154,8 +197,8 @@ impl Shared {
             }
             let Ok((shape, medium)) = air(case, profiles) else { continue };
             if method == Method::Solved {
-                if let Ok(solved) = Solved::new(&medium, shape, [case.albedo], &Resolution::RENDER) {
-                    shared.solved.insert(ground, Arc::new(solved));
+                if let Ok(pair) = Pair::new(&medium, shape, case.albedo, case.orders == "1") {
+                    shared.solved.insert(ground, Arc::new(pair));
                 }
             } else {
                 shared.columns.insert(key, Arc::new(Columns::new(&medium, shape, Tolerance::RENDER)));
@@ -169,7 +212,7 @@ impl Shared {
         ready.unwrap_or_else(|| Arc::new(Columns::new(medium, shape, Tolerance::RENDER)))
     }
 
-    fn solved(&self, case: &Case) -> Option<Arc<Solved<1>>> {
+    fn solved(&self, case: &Case) -> Option<Arc<Pair>> {
         Self::ground_key(case).and_then(|key| self.solved.get(&key)).cloned()
     }
 }
@@ -239,6 +282,9 @@ pub(super) fn prepare(
         None => {
             if max_orders.is_some_and(|orders| orders > 1) {
                 return Err("a solved table has one order or all".into());
+            }
+            if !matches!(quantity, Quantity::Radiance(_)) {
+                return Err("solved tables answer radiances".into());
             }
             Tables::Solved(shared.solved(case).ok_or("solved tables need a round planet")?)
         }

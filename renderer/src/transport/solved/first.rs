@@ -191,8 +191,6 @@ pub(super) fn scatter<const L: usize, const AZIMUTHS: usize>(
     (sum.moments, sum.ground)
 }
 
-const RULE: Rule = Rule { fine: false, least: 1.0 };
-
 #[inline(always)]
 fn steps<const L: usize>(setup: &Setup<'_, L>, level: usize, zenith: f64, sunlight: &Sunlight<L>) -> Vec<Step<L>> {
     let grid = setup.grid;
@@ -208,7 +206,8 @@ fn steps<const L: usize>(setup: &Setup<'_, L>, level: usize, zenith: f64, sunlig
         let mut scattered = vec![[0.0; L]; setup.species.len()];
         if let Some(last) = last {
             let ends = (last, place.s);
-            let lit = quadrature(&chord, setup.medium, setup.species, ends, RULE, &mut Sum(&mut scattered));
+            let rule = Rule { fine: false, least: 1.0, bends: &grid.bends };
+            let lit = quadrature(&chord, setup.medium, setup.species, ends, rule, &mut Sum(&mut scattered));
             if !lit {
                 break;
             }

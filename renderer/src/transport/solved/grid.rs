@@ -25,6 +25,8 @@ pub(super) struct Grid {
     pub(super) radius: f64,
     /// Altitudes in m, from the ground to the top.
     pub(super) levels: Vec<f64>,
+    /// Altitudes in m between levels at which quadratures are divided.
+    pub(super) bends: Vec<f64>,
     pub(super) suns: Suns,
 }
 
@@ -143,7 +145,9 @@ impl Grid {
     /// Places for a medium over a planet of that radius in m.
     pub(super) fn new<const L: usize>(medium: &Medium<L>, radius: f64, resolution: &Resolution) -> Self {
         let levels = levels(medium, resolution.levels);
-        Self { radius, suns: Suns::new(resolution.suns, radius, medium.top_m()), levels }
+        let mut bends = medium.bends();
+        bends.retain(|bend| !levels.contains(bend));
+        Self { bends, radius, suns: Suns::new(resolution.suns, radius, medium.top_m()), levels }
     }
 
     /// Radius of a level in m.

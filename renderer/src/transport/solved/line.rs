@@ -125,11 +125,13 @@ impl<const L: usize> Take<L> for Spread<'_, L> {
 
 /// How an interval is integrated.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Rule {
+pub(super) struct Rule<'a> {
     /// With Gauss' rule of four nodes rather than two.
     pub(super) fine: bool,
     /// The least number of parts of the interval.
     pub(super) least: f64,
+    /// Altitudes in m at which the interval is divided.
+    pub(super) bends: &'a [f64],
 }
 
 /// Transmittance below which nothing more is looked for.
@@ -157,7 +159,7 @@ pub(super) fn quadrature<const L: usize>(
     medium: &Medium<L>,
     species: &[Species<L>],
     (from, to): (f64, f64),
-    Rule { fine, least }: Rule,
+    Rule { fine, least, bends }: Rule<'_>,
     take: &mut impl Take<L>,
 ) -> bool {
     let (start, end) = (chord.point(from).depth, chord.point(to).depth);
@@ -175,23 +177,47 @@ pub(super) fn quadrature<const L: usize>(
     let (most, each) = MOST_PARTS;
     let parts = (thick / each).ceil().max(least).clamp(1.0, most);
     let mut scattered = [[0.0; L]; MOST_SPECIES];
-    let step = (to - from) / parts;
     let rule: &[(f64, f64)] = if fine { &GAUSS_4 } else { &GAUSS_2 };
-    for part in 0..parts as u32 {
-        let begin = from + step * f64::from(part);
-        for &(x, weight) in rule {
-            let s = begin + step * x;
-            let through = exp_minus(chord.point(s).depth);
-            let densities = medium.densities_at(chord.altitude(s));
-            for (row, one) in scattered.iter_mut().zip(species) {
-                let factor = weight * step * densities[one.component];
-                *row = std::array::from_fn(|j| factor * one.scattering[j] * through[j]);
+    // Where the interval is divided, before and after the perigee.
+    let mut ends = [to; MOST_BENDS + 1];
+    let mut count = 0;
+    if !bends.is_empty() {
+        let (low, high) = (from.abs().min(to.abs()), from.abs().max(to.abs()));
+        let low = if from < 0.0 && to > 0.0 { 0.0 } else { low };
+        for distance in bends.iter().filter(|h| **h > chord.perigee()).map(|h| chord.distance(*h)) {
+            for s in [-distance, distance] {
+                if distance > low && distance < high && s > from && s < to && count < MOST_BENDS {
+                    ends[count] = s;
+                    count += 1;
+                }
             }
-            take.take(s, &scattered[..species.len()]);
         }
+        ends[..count].sort_by(f64::total_cmp);
+    }
+    let mut start = from;
+    for &end in &ends[..=count] {
+        let parts = (parts * (end - start) / (to - from)).ceil().max(1.0);
+        let step = (end - start) / parts;
+        for part in 0..parts as u32 {
+            let begin = start + step * f64::from(part);
+            for &(x, weight) in rule {
+                let s = begin + step * x;
+                let through = exp_minus(chord.point(s).depth);
+                let densities = medium.densities_at(chord.altitude(s));
+                for (row, one) in scattered.iter_mut().zip(species) {
+                    let factor = weight * step * densities[one.component];
+                    *row = std::array::from_fn(|j| factor * one.scattering[j] * through[j]);
+                }
+                take.take(s, &scattered[..species.len()]);
+            }
+        }
+        start = end;
     }
     true
 }
+
+/// The most bends in one interval; further ones are not heeded.
+const MOST_BENDS: usize = 16;
 
 /// The most species that scatter.
 pub(super) const MOST_SPECIES: usize = crate::atmosphere::MAX_COMPONENTS;

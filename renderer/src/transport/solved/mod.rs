@@ -87,7 +87,10 @@ struct Setup<'a, const L: usize> {
 
 impl Resolution {
     /// What the renderer takes.
-    pub const RENDER: Self = Self { levels: 22, suns: 40, zeniths: [7, 4, 5], parts: 5, degree: 14 };
+    pub const RENDER: Self = Self { levels: 22, suns: 40, zeniths: [7, 4, 5], parts: 8, degree: 14 };
+
+    /// What reference cases take: also the twilight limb seen from space.
+    pub const FINE: Self = Self { levels: 32, suns: 48, zeniths: [10, 6, 8], parts: 8, degree: 16 };
 
     /// A coarser one, whose distance from [`Resolution::RENDER`] tells how far that is from the truth.
     pub const COARSE: Self = Self { levels: 16, suns: 33, zeniths: [5, 3, 4], parts: 4, degree: 14 };
@@ -95,6 +98,9 @@ impl Resolution {
 
 /// Relative change of the field by another order below which it counts as solved.
 const SOLVED: f64 = 5e-4;
+
+/// Why planes are refused.
+const ROUND: &str = "solved tables need a round planet: take --method paths";
 
 /// The most orders.
 const MOST_ORDERS: usize = 60;
@@ -110,14 +116,26 @@ impl<const L: usize> Solved<L> {
         albedo: [f64; L],
         resolution: &Resolution,
     ) -> Result<Self, SolveError> {
-        let Shape::Sphere { radius_m } = shape else {
-            return Err(SolveError::Refused("solved tables need a round planet: take --method paths"));
-        };
+        let Shape::Sphere { radius_m } = shape else { return Err(SolveError::Refused(ROUND)) };
         let degree = species::degree_of(medium, resolution.degree);
         let (species, medium) = species::scaled(medium, degree)?;
-        let columns = Columns::new(&medium, shape, Tolerance::RENDER);
+        let columns = Columns::new(&medium, shape, Tolerance::SOLVE);
         let optics = Optics { moments: Moments::new(degree), species, medium, columns, albedo };
         Ok(Self::with(Arc::new(optics), radius_m, resolution))
+    }
+
+    /// The first order alone, with nothing cut off the phase functions: only [`Solved::radiance`] with `single` is of use.
+    ///
+    /// # Errors
+    /// As [`Solved::new`].
+    pub fn single(medium: &Medium<L>, shape: Shape, albedo: [f64; L]) -> Result<Self, SolveError> {
+        let Shape::Sphere { radius_m } = shape else { return Err(SolveError::Refused(ROUND)) };
+        let (medium, columns) = (medium.clone(), Columns::new(medium, shape, Tolerance::RENDER));
+        let grid = Grid::new(&medium, radius_m, &Resolution::FINE);
+        let species = species::whole(&medium);
+        let optics = Optics { moments: Moments::new(2), species, medium, columns, albedo };
+        let field = Field { moments: Vec::new(), ground: Vec::new() };
+        Ok(Self { optics: Arc::new(optics), grid, field, orders: 1, residual: 0.0 })
     }
 
     fn with(optics: Arc<Optics<L>>, radius: f64, resolution: &Resolution) -> Self {
@@ -173,9 +191,12 @@ impl<const L: usize> Solved<L> {
 impl<const L: usize> Setup<'_, L> {
     fn solve(&self, resolution: &Resolution) -> (Field<L>, usize, f64) {
         let levels = self.grid.levels.len();
+        // Higher moments want closer directions.
+        let zeniths =
+            if self.moments.degree() > 2 { resolution.zeniths.map(|n| n + n / 2) } else { resolution.zeniths };
         let lines: Vec<_> = (0..levels)
             .into_par_iter()
-            .map(|level| rays::lines(self, level, &self.grid.zeniths(level, resolution.zeniths)))
+            .map(|level| rays::lines(self, level, &self.grid.zeniths(level, zeniths)))
             .collect();
         let sunlight = Sunlight::new(self, resolution.parts);
         let scattering = Scattering::new(self);

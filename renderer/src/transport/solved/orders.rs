@@ -198,7 +198,8 @@ impl<const L: usize> Gathered<L> {
         let cosines = azimuth_cosines::<AZIMUTHS>();
         // Twice for the other half of the circle.
         let weight = line.weight as f32 * 2.0 * PI / AZIMUTHS as f32;
-        let orders = moments.degree() + 1;
+        // A rule with so many azimuths would take the low orders of the radiance for higher moments.
+        let orders = (moments.degree() + 1).min(AZIMUTHS);
         let count = moments.count();
         let mut turned = [[0.0_f32; L]; MOST_COSINES];
         for (sun, radiance) in radiance.iter().enumerate() {
@@ -214,6 +215,9 @@ impl<const L: usize> Gathered<L> {
             }
             let here = &mut self.moments[sun * count..(sun + 1) * count];
             for ((sum, &(_, m)), harmonic) in here.iter_mut().zip(moments.pairs()).zip(&self.harmonics) {
+                if m >= orders {
+                    continue;
+                }
                 let factor = weight * *harmonic as f32;
                 for j in 0..L {
                     sum[j] += factor * turned[m][j];

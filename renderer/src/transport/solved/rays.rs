@@ -45,8 +45,6 @@ pub(super) struct Line<const L: usize> {
 /// Share of the largest weight of a node below which a species that is no molecule is taken for one: the degrees above 2 are left out.
 pub(super) const FAINT: f64 = 1e-3;
 
-const RULE: Rule = Rule { fine: true, least: 1.0 };
-
 /// The lines of a level.
 pub(super) fn lines<const L: usize>(setup: &Setup<'_, L>, level: usize, zeniths: &[(f64, f64)]) -> Vec<Line<L>> {
     zeniths.iter().map(|&(zenith, weight)| line(setup, level, zenith, weight)).collect()
@@ -66,9 +64,10 @@ fn line<const L: usize>(setup: &Setup<'_, L>, level: usize, zenith: f64, weight:
     let species = setup.species.len();
     let mut weights = vec![[0.0; L]; species * places.len()];
     for (i, ends) in places.windows(2).enumerate() {
+        let rule = Rule { fine: true, least: 1.0, bends: &grid.bends };
         let stencil = Stencil::around(i, places.len());
         let mut spread = Spread { places: &places, stencil, weights: &mut weights };
-        if !quadrature(&chord, setup.medium, setup.species, (ends[0].s, ends[1].s), RULE, &mut spread) {
+        if !quadrature(&chord, setup.medium, setup.species, (ends[0].s, ends[1].s), rule, &mut spread) {
             break;
         }
     }

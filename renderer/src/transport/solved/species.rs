@@ -38,6 +38,19 @@ pub(super) fn degree_of<const L: usize>(medium: &Medium<L>, degree: usize) -> us
     if medium.components().iter().any(peaked) { degree } else { 2 }
 }
 
+/// The scatterers of a medium with nothing cut off, for single scattering: without coefficients.
+pub(super) fn whole<const L: usize>(medium: &Medium<L>) -> Vec<Species<L>> {
+    let scatterers = medium.components().iter().enumerate().filter(|(_, c)| c.scatters());
+    let species = scatterers.map(|(component, c)| Species {
+        component,
+        scattering: c.scattering,
+        coefficients: Vec::new(),
+        whole: [1.0; L],
+        phase: c.phase.clone(),
+    });
+    species.collect()
+}
+
 /// The scatterers of a medium, and the medium in which the light that they send straight on is not scattered.
 pub(super) fn scaled<const L: usize>(
     medium: &Medium<L>,

@@ -74,7 +74,7 @@ impl<const L: usize> Solved<L> {
             for b in cuts.into_iter().chain([end]) {
                 let b = b.min(end);
                 if b > a {
-                    let rule = Rule { fine, least: sight.parts(a, b) };
+                    let rule = Rule { fine, least: sight.parts(a, b), bends: &self.grid.bends };
                     if !quadrature(&chord, &self.optics.medium, species, (a, b), rule, &mut taker) {
                         break 'line;
                     }
@@ -223,7 +223,9 @@ impl<const L: usize> Sight<'_, L> {
         let turns = a.abs().min(b.abs()) < 1.0 && a.abs().max(b.abs()) > 2e4;
         let least = if turns { 3.0 } else { 1.0 };
         if low_a || low_b {
-            ((at_a - at_b).abs() / (PASSES * self.solved.optics.medium.top_m())).ceil().max(least)
+            // Sunlight that passes through a layer with bends changes faster.
+            let passes = if self.solved.grid.bends.is_empty() { PASSES } else { 0.3 * PASSES };
+            ((at_a - at_b).abs() / (passes * self.solved.optics.medium.top_m())).ceil().max(least)
         } else {
             least
         }
