@@ -175,7 +175,7 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, 
         println!("            relative humidity: {}", humidities.join(", "));
     }
     let of = |Estimate { mean, error }: Estimate, unit: &str| {
-        let spread = if mean > 0.0 { format!(" (+- {})", percent(error / mean)) } else { String::new() };
+        let spread = if mean > 0.0 && error > 0.0 { format!(" (+- {})", percent(error / mean)) } else { String::new() };
         format!("{} {unit}{spread}", amount(mean))
     };
     let place = if scene.in_space() { ", above the atmosphere: nothing overhead" } else { "" };

@@ -2,7 +2,7 @@
 
 use super::Sky;
 use crate::film::Estimate;
-use crate::sampling::{Sampler, cosine_hemisphere};
+use crate::sampling::{Sampler, around, cosine_hemisphere};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -35,29 +35,44 @@ const ENOUGH: f64 = 5e-3;
 
 impl Summary {
     /// Computes the summary on the current thread pool: the sun by quadrature
-    /// ([`Sky::direct_irradiance`]); the sky as pi times the mean luminance over directions
-    /// distributed as cos(theta)/pi; both estimates to 0.5 % standard error or 131 072 samples, in sequences whose
+    /// ([`Sky::direct_irradiance`]); the sky as pi times the mean weighted luminance over directions
+    /// (half of them about the sun, weighed accordingly); both estimates to 0.5 % standard error or 131 072 samples, in sequences whose
     /// spread is the error, fewer once `stop` is set.
     #[must_use]
     pub fn new(sky: &Sky, seed: u64, stop: &AtomicBool) -> Self {
-        let hemisphere = estimate(sky, (seed, HEMISPHERE), stop, |sampler| {
-            let [u, v, ..] = sampler.four();
-            cosine_hemisphere(DVec3::Z, [u, v])
-        });
+        let hemisphere = estimate(sky, (seed, HEMISPHERE), stop, |sampler| overhead(sky.sun_direction(), sampler));
         Self {
             sun_lux: sky.colour().xyz(&sky.direct_irradiance())[1],
             sky_lux: Estimate { mean: PI * hemisphere.mean, error: PI * hemisphere.error },
-            zenith_cd_m2: estimate(sky, (seed, ZENITH), stop, |_| DVec3::Z),
+            zenith_cd_m2: estimate(sky, (seed, ZENITH), stop, |_| (DVec3::Z, 1.0)),
         }
     }
 }
 
-/// Mean luminance over the directions that `draw` gives.
+/// A direction above, and cos(theta) over pi times its density: half of all are distributed as cos(theta)/pi, half lie close
+/// about the sun, evenly in the logarithm of the angle from it, for the sake of the aureole; either kind is weighed by the
+/// density of both together.
+fn overhead(sun: DVec3, sampler: &mut Sampler) -> (DVec3, f64) {
+    const ANGLES: (f64, f64) = (1e-3, PI);
+    let [u, v, kind, _] = sampler.four();
+    let span = (ANGLES.1 / ANGLES.0).ln();
+    let direction = if kind < 0.5 {
+        cosine_hemisphere(DVec3::Z, [u, v])
+    } else {
+        around(sun, (ANGLES.0 * (u * span).exp()).cos(), v)
+    };
+    let cosine = direction.z.max(0.0);
+    let angle = direction.angle_between(sun);
+    let near = if angle > ANGLES.0 { 1.0 / (2.0 * PI * angle.sin().max(1e-9) * angle * span) } else { 0.0 };
+    (direction, cosine / (0.5 * cosine + 0.5 * PI * near))
+}
+
+/// Mean weighted luminance over the directions that `draw` gives.
 fn estimate(
     sky: &Sky,
     (seed, stream): (u64, u64),
     stop: &AtomicBool,
-    draw: impl Fn(&mut Sampler) -> DVec3 + Sync,
+    draw: impl Fn(&mut Sampler) -> (DVec3, f64) + Sync,
 ) -> Estimate {
     let (mut count, mut mean, mut squares) = (0.0, 0.0, 0.0);
     let most = if sky.is_solved() { SOLVED } else { SEQUENCES.1 };
@@ -70,9 +85,12 @@ fn estimate(
                 let sum: f64 = (0..SEQUENCE)
                     .map(|point| {
                         let mut sampler = Sampler::sobol(seed, stream, sequence, point as u32);
-                        let direction = draw(&mut sampler);
+                        let (direction, weight) = draw(&mut sampler);
+                        if weight == 0.0 {
+                            return 0.0;
+                        }
                         sky.radiance(direction, &sampler, &mut factors);
-                        sky.colour().xyz(&factors)[1]
+                        weight * sky.colour().xyz(&factors)[1]
                     })
                     .sum();
                 sum / SEQUENCE as f64

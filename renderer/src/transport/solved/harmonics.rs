@@ -14,6 +14,8 @@ pub(super) struct Moments {
     /// Degree l and order m of each.
     pairs: Vec<(usize, usize)>,
     degree: usize,
+    /// Of m and of l.
+    steps: Vec<Step>,
 }
 
 impl Moments {
@@ -24,7 +26,12 @@ impl Moments {
             pairs.extend([(1, 0), (1, 1)]);
             pairs.extend((3..=degree).flat_map(|l| (0..=l).map(move |m| (l, m))));
         }
-        Self { pairs, degree: degree.max(2) }
+        let degree = degree.max(2);
+        let step = |m: usize, l: usize| {
+            if l < m { Step::default() } else { Step::to(l, m, pairs.iter().position(|pair| *pair == (l, m))) }
+        };
+        let steps = (0..=degree).flat_map(|m| (0..=degree).map(move |l| (m, l))).map(|(m, l)| step(m, l)).collect();
+        Self { pairs, degree, steps }
     }
 
     /// How many there are.
@@ -42,29 +49,49 @@ impl Moments {
         &self.pairs
     }
 
-    /// S_lm(mu) of each.
+    /// S_lm(mu) of each: S_mm = sqrt((2m - 1) / (2m)) sin S_(m-1)(m-1), and from there
+    /// sqrt(l^2 - m^2) S_lm = (2l - 1) mu S_(l-1)m - sqrt((l - 1)^2 - m^2) S_(l-2)m.
+    #[inline(always)]
     pub(super) fn at(&self, mu: f64, values: &mut Vec<f64>) {
         let sine = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
         let width = self.degree + 1;
-        // S_lm at [m * width + l].
-        let mut table = [0.0; (MOST_DEGREE + 1) * (MOST_DEGREE + 1)];
+        values.clear();
+        values.resize(self.pairs.len(), 0.0);
         let mut diagonal = 1.0;
-        for m in 0..width {
-            if m > 0 {
-                let m = m as f64;
-                diagonal *= sine * if m > 1.0 { ((2.0 * m - 1.0) / (2.0 * m)).sqrt() } else { 1.0 };
-            }
-            let row = &mut table[m * width..(m + 1) * width];
-            row[m] = diagonal;
-            for l in m + 1..width {
-                let before = if l > m + 1 { row[l - 2] } else { 0.0 };
-                let (lf, mf) = (l as f64, m as f64);
-                let root = ((lf - 1.0) * (lf - 1.0) - mf * mf).sqrt();
-                row[l] = ((2.0 * lf - 1.0) * mu * row[l - 1] - root * before) / (lf * lf - mf * mf).sqrt();
+        for (m, steps) in self.steps.chunks_exact(width).enumerate() {
+            diagonal *= if m > 0 { sine * steps[m].by_mu } else { 1.0 };
+            let (mut before, mut value) = (0.0, diagonal);
+            for (l, step) in steps.iter().enumerate().skip(m) {
+                if l > m {
+                    (before, value) = (value, step.by_mu * mu * value - step.by_before * before);
+                }
+                if let Some(place) = step.place {
+                    values[place] = value;
+                }
             }
         }
-        values.clear();
-        values.extend(self.pairs.iter().map(|&(l, m)| table[m * width + l]));
+    }
+}
+
+/// One step of the recurrences: to (l, m) from (l - 1, m) and (l - 2, m), or to (m, m) from (m - 1, m - 1).
+#[derive(Debug, Clone, Copy, Default)]
+struct Step {
+    by_mu: f64,
+    by_before: f64,
+    /// Where the value belongs among the pairs.
+    place: Option<usize>,
+}
+
+impl Step {
+    fn to(l: usize, m: usize, place: Option<usize>) -> Self {
+        let (n, k) = (l as f64, m as f64);
+        if l == m {
+            let by_mu = if m > 1 { ((2.0 * k - 1.0) / (2.0 * k)).sqrt() } else { 1.0 };
+            return Self { by_mu, by_before: 0.0, place };
+        }
+        let root = (n * n - k * k).sqrt();
+        let before = ((n - 1.0) * (n - 1.0) - k * k).max(0.0).sqrt();
+        Self { by_mu: (2.0 * n - 1.0) / root, by_before: before / root, place }
     }
 }
 

@@ -251,7 +251,7 @@ impl<const L: usize> Sight<'_, L> {
         }
         let across = ((1.0 - zenith) * (1.0 + zenith) * (1.0 - there) * (1.0 + there)).max(0.0).sqrt();
         let turn = if across > 1e-9 { ((towards - zenith * there) / across).clamp(-1.0, 1.0) } else { 1.0 };
-        let mut harmonics = Vec::new();
+        let mut harmonics = Vec::with_capacity(solved.optics.moments.count());
         solved.optics.moments.at(zenith, &mut harmonics);
         let peaked = |one: &Species<L>, weights: &[f64; L]| {
             !one.is_molecular() && weights.iter().any(|w| w.abs() > FAINT * largest)
@@ -259,11 +259,11 @@ impl<const L: usize> Sight<'_, L> {
         let all = solved.optics.species.iter().zip(weights).any(|(one, weights)| peaked(one, weights));
         let count = if all { solved.optics.moments.count() } else { RAYLEIGH };
         let degree = if all { solved.optics.moments.degree() } else { 2 };
-        let mut sources = [[0.0; L]; super::harmonics::MOST_DEGREE + 1];
-        for (l, source) in sources.iter_mut().enumerate().take(degree + 1) {
-            for (one, weights) in solved.optics.species.iter().zip(weights) {
+        let mut sources = [[0.0_f32; L]; super::harmonics::MOST_DEGREE + 1];
+        for (one, weights) in solved.optics.species.iter().zip(weights) {
+            for (source, coefficients) in sources[..=degree].iter_mut().zip(&one.coefficients) {
                 for j in 0..L {
-                    source[j] += weights[j] * one.coefficients[l][j];
+                    source[j] += (weights[j] * coefficients[j]) as f32;
                 }
             }
         }
@@ -275,15 +275,20 @@ impl<const L: usize> Sight<'_, L> {
         let (suns, moments) = (solved.grid.suns.count(), solved.optics.moments.count());
         let from = (place.level * suns + first as usize) * moments;
         let rows = &solved.field.moments[from..from + 4 * moments];
-        for (index, &(l, m)) in solved.optics.moments.pairs()[..count].iter().enumerate() {
-            let factor = harmonics[index] * cosines[m];
+        let (below, above) = rows.split_at(2 * moments);
+        let ((a, b), (c, d)) = (below.split_at(moments), above.split_at(moments));
+        let pairs = solved.optics.moments.pairs()[..count].iter().zip(&harmonics);
+        let mut total = [0.0_f32; L];
+        for ((((&(l, m), harmonic), (a, b)), c), d) in pairs.zip(a.iter().zip(b)).zip(c).zip(d) {
+            let factor = (harmonic * cosines[m]) as f32;
+            let source = &sources[l];
             for j in 0..L {
-                let mut moment = 0.0;
-                for (k, weight) in lagrange.iter().enumerate() {
-                    moment += weight * rows[k * moments + index][j];
-                }
-                sum[j] += factor * sources[l][j] * f64::from(moment);
+                let moment = (lagrange[0] * a[j] + lagrange[1] * b[j]) + (lagrange[2] * c[j] + lagrange[3] * d[j]);
+                total[j] += factor * source[j] * moment;
             }
+        }
+        for j in 0..L {
+            sum[j] += f64::from(total[j]);
         }
     }
 }
