@@ -36,7 +36,7 @@ pub(super) struct RenderArgs {
     /// Solved tables, paths on column tables, or the brute-force judge [default: paths]
     #[arg(long, value_name = "METHOD", help_heading = "Sampling")]
     pub method: Option<MethodName>,
-    /// Samples per pixel, 1 to 10^9, rounded up to whole blocks; with --error or --time the most of them [default: 64]
+    /// Samples per pixel, 1 to 10^9, rounded up to whole blocks; with --error or --time the most of them [default: 64; 1 of solved tables]
     #[arg(long, value_name = "N", help_heading = "Sampling")]
     pub spp: Option<u32>,
     /// Go on until sqrt(mean squared standard error) over mean radiance, the solar disc left

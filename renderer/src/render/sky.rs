@@ -8,7 +8,7 @@ use crate::light::{SunDisc, solar_angular_radius};
 use crate::sampling::Sampler;
 use crate::scene::{Scene, SceneError};
 use crate::spectrum::{Colour, Packet, Wavelengths};
-use crate::transport::{self, Estimator, Method, Problem, Resolution, Solved};
+use crate::transport::{self, Estimator, Method, Problem, Resolution, SolveError, Solved};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::ops::Range;
@@ -232,6 +232,9 @@ fn check_wavelengths(scene: &Scene, data: &Data) -> Result<(), TableError> {
     reach(Kind::Sun, &data.sun.irradiance_w_m2_nm)
 }
 
+/// Error that a solved table may state at most.
+const MOST_ERROR: f64 = 0.1;
+
 /// What a solution is off, of what it differs from the coarser one: that is off by two to four times as much.
 const FINER: f64 = 0.5;
 
@@ -258,6 +261,9 @@ impl Parts<'_> {
                 let solved = Solved::new(&medium, shape, albedo, &Resolution::RENDER)?;
                 let coarse = solved.again(&Resolution::COARSE);
                 let error = FINER * solved.difference(&coarse, self.place, self.sun_direction);
+                if error.is_nan() || error > MOST_ERROR {
+                    return Err(SolveError::Inexact(error).into());
+                }
                 Means::Solved(solved, error)
             }
             Some(estimator) => Means::Estimated(estimator, Columns::new(&medium, shape, Tolerance::RENDER)),

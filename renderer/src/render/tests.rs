@@ -29,6 +29,24 @@ fn sky(scene: &Scene) -> Sky {
 }
 
 #[test]
+fn solved_pictures_have_no_noise_and_state_the_tables_error() {
+    let scene = Scene { method: Method::Solved, spp: None, ..small() };
+    let sky = sky(&scene);
+    let picture = |seed| format!("{:?}", render(&Scene { seed, ..scene.clone() }, &sky, RUN).expect("finite").film);
+    assert_eq!(picture(1), picture(2), "the middle of each pixel needs no random number");
+    let error = sky.table_error().expect("solved");
+    assert!(error > 1e-6 && error < 2e-3, "by day {error:e}");
+}
+
+#[test]
+fn a_sun_too_low_for_a_solved_table_is_refused() {
+    let scene = Scene { method: Method::Solved, sun_elevation_deg: -18.0, ..small() };
+    let data = Data::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../data")).expect("tables");
+    let error = Sky::new(&scene, &data).expect_err("dark").to_string();
+    assert!(error.contains("--method paths") && error.contains("too low"), "{error}");
+}
+
+#[test]
 fn any_number_of_threads_gives_the_same_picture() {
     let scene = small();
     let sky = sky(&scene);

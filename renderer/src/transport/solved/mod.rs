@@ -47,12 +47,19 @@ use std::sync::Arc;
 /// Why a scene has no solved table.
 #[derive(Debug, thiserror::Error)]
 pub enum SolveError {
+    /// The table is too far off for this sun.
+    #[error("the solved table would be off by {}: take --method paths (the sun is too low for it, or the air too thick)", off(*.0))]
+    Inexact(f64),
     /// The method does not cover it.
     #[error("{0}")]
     Refused(&'static str),
     /// The atmosphere without its forward peaks is impossible.
     #[error(transparent)]
     Medium(#[from] MediumError),
+}
+
+fn off(error: f64) -> String {
+    if error.is_finite() { format!("{:.0} %", 100.0 * error) } else { "more than can be said".into() }
 }
 
 /// The diffuse field of an atmosphere over a uniform ground, at `L` wavelengths.
@@ -153,14 +160,19 @@ impl<const L: usize> Solved<L> {
     }
 
     /// Root mean square over 64 directions and all wavelengths of the difference to the radiances of another solution of the same
-    /// atmosphere, over their mean at the wavelength, at an observer with the sun in that unit direction. 0 where it is dark.
+    /// atmosphere, over their mean at the wavelength, at an observer with the sun in that unit direction; of the directions in
+    /// which the planet lies if the observer is above its air. 0 where it is dark.
     #[must_use]
     pub fn difference(&self, other: &Self, from: Place, sun: DVec3) -> f64 {
         const DIRECTIONS: u32 = 64;
         let (mut squares, mut means) = ([0.0; L], [0.0; L]);
+        // From above the air only the planet is looked at.
+        let top = self.grid.radius + self.optics.medium.top_m();
+        let least = (top / (self.grid.radius + from.altitude_m)).min(1.0);
+        let highest = if least < 1.0 { -((1.0 - least) * (1.0 + least)).sqrt() } else { 1.0 };
         for i in 0..DIRECTIONS {
             // Even in solid angle, by steps of the golden angle.
-            let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(DIRECTIONS);
+            let z = highest - (highest + 1.0) * (f64::from(i) + 0.5) / f64::from(DIRECTIONS);
             let (sin, cos) = (f64::from(i) * 2.399_963_229_728_653).sin_cos();
             let level = (1.0 - z * z).sqrt();
             let direction = DVec3::new(level * cos, level * sin, z);
@@ -171,7 +183,7 @@ impl<const L: usize> Solved<L> {
             }
         }
         let lit = squares.iter().zip(means).filter(|(_, mean)| *mean > 0.0);
-        let sum: f64 = lit.map(|(square, mean)| square / (mean * mean)).sum();
+        let sum = lit.fold(0.0, |sum, (square, mean)| sum + square / (mean * mean));
         (sum / L as f64).sqrt()
     }
 
