@@ -33,7 +33,7 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "scene", help_heading = "Files")]
     pub resume: Option<PathBuf>,
 
-    /// Solved tables, paths on column tables, or the brute-force judge [default: paths]
+    /// Solved tables (without noise), paths on column tables, or the brute-force judge [default: solved]
     #[arg(long, value_name = "METHOD", help_heading = "Sampling")]
     pub method: Option<MethodName>,
     /// Samples per pixel, 1 to 10^9, rounded up to whole blocks; with --error or --time the most of them [default: 64; 1 of solved tables]
