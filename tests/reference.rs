@@ -8,7 +8,7 @@ use renderer::cases::{Effort, Settings, Tier, read, run};
 use renderer::transport::Method;
 use std::collections::BTreeMap;
 
-/// Answers every case of a file at 1 % and compares: each within 4.5 errors (a false alarm in 3e-4 of all
+/// Answers every case of a file at 1 % (solved tables: those on a sphere, as exactly as they are) and compares: each within 4.5 errors (a false alarm in 3e-4 of all
 /// runs of forty), and together by chi-square within `most`.
 fn agree(file: &str, most: f64) {
     let path = root().join("tests/reference").join(file);
@@ -23,11 +23,12 @@ fn agree(file: &str, most: f64) {
         })
         .collect();
     let suite = read(&path).expect("cases");
-    for method in [Method::Judge, Method::Paths] {
+    for method in [Method::Judge, Method::Paths, Method::Solved] {
         let settings = Settings { tier: Tier::Full, method, effort: Effort::Error(0.01), seed: 1 };
         let report = run(&suite, &settings, &|_, _| {});
-        assert_eq!(report.refusals, [], "{method:?}");
-        assert_eq!(report.answers.len(), expected.len());
+        let planes = report.refusals.iter().filter(|refusal| refusal.why.contains("round planet")).count();
+        assert!(planes == report.refusals.len() && (planes == 0 || method == Method::Solved), "{:?}", report.refusals);
+        assert_eq!(report.answers.len() + planes, expected.len());
         let (mut squares, mut largest) = (0.0, 0.0_f64);
         for answer in &report.answers {
             let (value, unc) = expected[answer.id.as_str()];
@@ -39,9 +40,9 @@ fn agree(file: &str, most: f64) {
         let percent = 100.0 * largest;
         println!(
             "{file}, {method:?}: chi-square {squares:.1} of {}, largest difference {percent:.1} %",
-            expected.len()
+            report.answers.len()
         );
-        assert!(squares < most, "{method:?}: chi-square {squares} of {}", expected.len());
+        assert!(squares < most, "{method:?}: chi-square {squares} of {}", report.answers.len());
     }
 }
 

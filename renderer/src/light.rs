@@ -36,6 +36,8 @@ pub struct SunDisc<const L: usize> {
     cap: f64,
     /// a_ij / <I_j>, by power i.
     profile: Vec<[f64; L]>,
+    /// See [`SunDisc::spread`].
+    spread: f64,
 }
 
 impl<const L: usize> SunDisc<L> {
@@ -76,7 +78,8 @@ impl<const L: usize> SunDisc<L> {
                 *a /= mean;
             }
         }
-        Self { direction, angular_radius, cap: versine(angular_radius), profile }
+        let disc = Self { direction, angular_radius, cap: versine(angular_radius), profile, spread: 0.0 };
+        Self { spread: disc.mean_height_squared(), ..disc }
     }
 
     /// Unit vector towards the disc's centre, in the frame it was given in.
@@ -111,16 +114,21 @@ impl<const L: usize> SunDisc<L> {
     }
 
     /// Mean of the square of the angle (radians) by which a point of the disc lies above or below its centre, by brightness:
-    /// R^2 / 4 of an even disc; mean over the wavelengths. By the midpoint rule in the square of the radius.
+    /// R^2 / 4 of an even disc; mean over the wavelengths.
     #[must_use]
     pub fn spread(&self) -> f64 {
+        self.spread
+    }
+
+    /// [`SunDisc::spread`] by the midpoint rule in the square of the radius.
+    fn mean_height_squared(&self) -> f64 {
         const RINGS: u32 = 64;
         let ring = |i: u32| {
             let versine = self.cap * (f64::from(i) + 0.5) / f64::from(RINGS);
             // Half of theta^2 = 2 (1 - cos theta).
             versine * self.weight(versine).iter().sum::<f64>() / L as f64
         };
-        (0..RINGS).map(ring).sum::<f64>() / f64::from(RINGS)
+        if self.cap > 0.0 { (0..RINGS).map(ring).sum::<f64>() / f64::from(RINGS) } else { 0.0 }
     }
 
     /// Radiance in sr^-1 per unit irradiance in the unit vector `direction`; `None` off the
@@ -201,6 +209,16 @@ mod tests {
     fn the_sun_is_half_a_degree_wide() {
         // R/au = 4.650467e-3: 959.23 seconds of arc.
         assert!((solar_angular_radius().to_degrees() * 3600.0 - 959.23).abs() < 0.01);
+    }
+
+    #[test]
+    fn an_even_disc_spreads_by_half_its_radius() {
+        // <y^2> = R^2/4 but for the curvature of the sphere, R^2/12 of itself = 2e-6, and the rule, which is exact here. A disc
+        // that is darker at the limb spreads less.
+        let radius = solar_angular_radius();
+        let even = SunDisc::darkened(DVec3::Z, radius, vec![[1.0]]);
+        assert!((even.spread() / (0.25 * radius * radius) - 1.0).abs() < 1e-5, "{}", even.spread());
+        assert!(discs()[0].spread() < 0.97 * even.spread() && SunDisc::<1>::beam(DVec3::Z).spread() == 0.0);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use pulp::NullaryFnOnce;
 
 /// Does `work` with the widest vectors of this processor; all that it calls is to be inlined. Nothing is fused or
-/// reordered, so that the results are the same on all processors.
+/// reordered, so that the results do not depend on the width.
 pub(crate) fn vectorised<W: NullaryFnOnce>(work: W) -> W::Output {
     pulp::Arch::new().dispatch(work)
 }
@@ -19,7 +19,8 @@ pub(crate) fn exp_minus<const L: usize>(x: [f64; L]) -> [f64; L] {
     const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
     let mut result = [0.0; L];
     for j in 0..L {
-        let y = (-x[j]).max(-700.0);
+        // No number stays none.
+        let y = if x[j] > 700.0 { -700.0 } else { -x[j] };
         let shifted = y * std::f64::consts::LOG2_E + ROUND;
         let k = shifted - ROUND;
         let r = y - k * LN2_HIGH - k * LN2_LOW;
@@ -48,5 +49,6 @@ mod tests {
             assert!((y / (-x).exp() - 1.0).abs() < 3e-13, "exp(-{x}): {y}, {}", (-x).exp());
         }
         assert_eq!(exp_minus([0.0, 701.0, f64::INFINITY]), [1.0, 0.0, 0.0]);
+        assert!(exp_minus([f64::NAN])[0].is_nan());
     }
 }

@@ -416,7 +416,7 @@ impl<const L: usize> Medium<L> {
 }
 
 /// Nodes in -1..1 and weights of the four-point Gauss-Legendre rule.
-pub(super) const GAUSS_4: [(f64, f64); 4] = [
+pub(crate) const GAUSS_4: [(f64, f64); 4] = [
     (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
     (-0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
     (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),

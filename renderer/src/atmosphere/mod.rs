@@ -14,4 +14,5 @@ mod medium;
 pub use air::{Air, AirError, AirSettings, OzoneSource};
 pub use columns::{Chord, Columns, Point, Tolerance};
 pub use haze::{Amount, Haze, HazePhase, HazeSettings, KOSCHMIEDER};
+pub(crate) use medium::GAUSS_4;
 pub use medium::{Component, Local, MAX_COMPONENTS, Medium, MediumError, Shell};

@@ -150,10 +150,6 @@ pub fn measure(
     view: (f64, f64),
     seconds: f64,
 ) -> Cost {
-    let towards = |zenith: f64, azimuth: f64| {
-        let ((sin, cos), (sin_a, cos_a)) = (zenith.to_radians().sin_cos(), azimuth.to_radians().sin_cos());
-        DVec3::new(sin * cos_a, sin * sin_a, cos)
-    };
     let sun = SunDisc::beam(towards(case.sun_zenith_deg, 0.0));
     let problem = Problem {
         shape: Shape::Sphere { radius_m: RADIUS_M },
@@ -219,6 +215,12 @@ pub fn measure(
         points *= 2;
     }
     cost
+}
+
+/// The direction of a zenith angle and an azimuth from the sun, in degrees.
+fn towards(zenith: f64, azimuth: f64) -> DVec3 {
+    let ((sin, cos), (sin_a, cos_a)) = (zenith.to_radians().sin_cos(), azimuth.to_radians().sin_cos());
+    DVec3::new(sin * cos_a, sin * sin_a, cos)
 }
 
 /// The columns of a case's medium.

@@ -1,5 +1,6 @@
 //! What solved tables cost, and how far they are from the path tracer.
 
+use super::towards;
 use crate::atmosphere::{Columns, Tolerance};
 use crate::data::Data;
 use crate::geometry::{Place, Shape};
@@ -7,7 +8,7 @@ use crate::light::SunDisc;
 use crate::render::{RenderError, Sky};
 use crate::sampling::Sampler;
 use crate::scene::Scene;
-use crate::transport::{self, Estimator, Method, Problem, Resolution, Solved};
+use crate::transport::{self, Estimator, FINER, Method, Problem, Resolution, Solved};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -51,7 +52,7 @@ pub struct Distance {
     pub mean: f64,
     /// Relative difference of the direction in which it is largest, mean over the wavelengths.
     pub worst: f64,
-    /// Half the table's distance from a coarser one, as it is stated with pictures.
+    /// [`FINER`] of the table's distance from a coarser one, as it is stated with pictures.
     pub stated: f64,
 }
 
@@ -124,7 +125,7 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
             noise: mean(&|row| row.1).sqrt(),
             mean: mean(&|row| row.2),
             worst: rows.iter().map(|row| row.2).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a }),
-            stated: 0.5 * solved.difference(&coarse, from, sun),
+            stated: FINER * solved.difference(&coarse, from, sun),
         }
     });
     Ok(Report { seconds, size: (solved.convergence().0, solved.bytes()), picture_seconds, suns: distances.collect() })
@@ -156,10 +157,4 @@ fn estimate<const L: usize>(
     let n = SEQUENCES as f64;
     let variance = std::array::from_fn(|j| (squares[j] / n - (sums[j] / n).powi(2)).max(0.0) / (n - 1.0));
     (sums.map(|sum| sum / n), variance)
-}
-
-/// The direction of a zenith angle and an azimuth from the sun, in degrees.
-fn towards(zenith: f64, azimuth: f64) -> DVec3 {
-    let ((sin, cos), (sin_a, cos_a)) = (zenith.to_radians().sin_cos(), azimuth.to_radians().sin_cos());
-    DVec3::new(sin * cos_a, sin * sin_a, cos)
 }

@@ -6,7 +6,7 @@ use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::phase::Phase;
 use crate::sampling::{Sampler, cosine_hemisphere};
-use crate::transport::{self, Estimator, Method, Problem, Resolution, SolveError, Solved};
+use crate::transport::{self, Estimator, FINER, Method, Problem, Resolution, SolveError, Solved};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -98,7 +98,7 @@ impl Estimand {
         }
     }
 
-    /// A radiance from solved tables, and its error: half the distance from the coarser one, and [`UNSEEN`].
+    /// A radiance from solved tables, and its error: [`FINER`] of the distance from the coarser one, and [`UNSEEN`].
     fn solved(&self, pair: &Pair, direction: DVec3) -> (f64, f64) {
         let look = |solved: &Solved<1>, single: bool| {
             self.f0 * solved.radiance(self.place, direction, self.sun.direction(), single)[0]
@@ -110,7 +110,7 @@ impl Estimand {
             }
             Some(coarse) => {
                 let value = look(&pair.solved, false);
-                (value, (0.5 * (value - look(coarse, false))).hypot(UNSEEN.1 * value))
+                (value, (FINER * (value - look(coarse, false))).hypot(UNSEEN.1 * value))
             }
         }
     }

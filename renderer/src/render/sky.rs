@@ -8,7 +8,7 @@ use crate::light::{SunDisc, solar_angular_radius};
 use crate::sampling::Sampler;
 use crate::scene::{Scene, SceneError};
 use crate::spectrum::{Colour, Packet, Wavelengths};
-use crate::transport::{self, Estimator, Method, Problem, Resolution, SolveError, Solved};
+use crate::transport::{self, Estimator, FINER, Method, Problem, Resolution, SolveError, Solved};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::ops::Range;
@@ -234,9 +234,6 @@ fn check_wavelengths(scene: &Scene, data: &Data) -> Result<(), TableError> {
 
 /// Error that a solved table may state at most.
 const MOST_ERROR: f64 = 0.1;
-
-/// What a solution is off, of what it differs from the coarser one: that is off by two to four times as much.
-const FINER: f64 = 0.5;
 
 /// What a packet is made from.
 struct Parts<'a> {

@@ -20,7 +20,7 @@ impl Tolerance {
     /// What the renderer takes: transmittances to 2e-5, and 2e-4 relative wherever they exceed 1e-6.
     pub const RENDER: Self = Self { depth: 2e-5 };
 
-    /// What solved tables take: five times as much, in a third of the time.
+    /// What solved tables take: five times as much, which their views do not notice.
     pub const SOLVE: Self = Self { depth: 1e-4 };
 
     /// Allowed error of the optical depth where it is `tau`.

@@ -2,7 +2,7 @@
 
 use super::Setup;
 use super::harmonics::legendre;
-use super::line::{Rule, Sum, crossings, quadrature};
+use super::line::{MOST_SPECIES, Rule, Sum, crossings, quadrature};
 use super::orders::{Gathered, Turns, azimuth_cosines};
 use super::rays::Line;
 use crate::geometry::Place;
@@ -66,7 +66,7 @@ impl<const L: usize> Sunlight<L> {
                     // A sun on the horizon itself would be hidden by rounding.
                     let cosine = cosine.clamp(horizon + 1e-9, 1.0);
                     let direction = DVec3::new(((1.0 - cosine) * (1.0 + cosine)).sqrt(), 0.0, cosine);
-                    let through = setup.columns.transmittance(Place::above(*h), direction);
+                    let through = setup.optics.columns.transmittance(Place::above(*h), direction);
                     through.map_or([0.0; L], |through| through.map(|t| t as f32))
                 };
                 (0..NODES).map(node).collect()
@@ -134,10 +134,10 @@ impl<const L: usize> Scattering<L> {
     const STEPS: usize = 4096;
 
     pub(super) fn new(setup: &Setup<'_, L>) -> Self {
-        let degree = setup.moments.degree();
+        let degree = setup.optics.moments.degree();
         let polynomials: Vec<Vec<f64>> =
             (0..=Self::STEPS).map(|i| legendre(degree, 2.0 * i as f64 / Self::STEPS as f64 - 1.0)).collect();
-        let values = setup.species.iter().map(|one| {
+        let values = setup.optics.species.iter().map(|one| {
             let value = |p: &Vec<f64>| {
                 let mut sum = [0.0; L];
                 for (b, p) in one.coefficients.iter().zip(p) {
@@ -181,12 +181,12 @@ pub(super) fn scatter<const L: usize, const AZIMUTHS: usize>(
     scattering: &Scattering<L>,
 ) -> (Vec<[f32; L]>, Vec<[f32; L]>) {
     let suns = &setup.grid.suns;
-    let mut sum = Gathered::new(setup.moments.count(), suns.count());
+    let mut sum = Gathered::new(setup.optics.moments.count(), suns.count());
     let mut radiance = vec![[[0.0; L]; AZIMUTHS]; suns.count()];
     for line in lines {
         let steps = steps(setup, level, line.zenith, sunlight);
         along(setup, line, &steps, sunlight, scattering, &mut radiance);
-        sum.add(line, setup.moments, &radiance);
+        sum.add(line, &setup.optics.moments, &radiance);
     }
     (sum.moments, sum.ground)
 }
@@ -195,19 +195,21 @@ pub(super) fn scatter<const L: usize, const AZIMUTHS: usize>(
 fn steps<const L: usize>(setup: &Setup<'_, L>, level: usize, zenith: f64, sunlight: &Sunlight<L>) -> Vec<Step<L>> {
     let grid = setup.grid;
     let direction = DVec3::new(((1.0 - zenith) * (1.0 + zenith)).sqrt(), 0.0, zenith);
-    let Some(chord) = setup.columns.chord(Place::above(grid.levels[level]), direction) else { return Vec::new() };
+    let Some(chord) = setup.optics.columns.chord(Place::above(grid.levels[level]), direction) else {
+        return Vec::new();
+    };
     let from = chord.ends().0;
     let places = crossings(&chord, &sunlight.altitudes, from);
     let start = grid.level_radius(level);
-    let nothing = vec![[0.0; L]; setup.species.len()];
+    let nothing = vec![[0.0; L]; setup.optics.species.len()];
     let mut steps: Vec<Step<L>> = Vec::with_capacity(places.len());
     let mut last: Option<f64> = None;
     for place in &places {
-        let mut scattered = vec![[0.0; L]; setup.species.len()];
+        let mut scattered = vec![[0.0; L]; setup.optics.species.len()];
         if let Some(last) = last {
             let ends = (last, place.s);
             let rule = Rule { fine: false, least: 1.0, bends: &grid.bends };
-            let lit = quadrature(&chord, setup.medium, setup.species, ends, rule, &mut Sum(&mut scattered));
+            let lit = quadrature(&chord, setup.optics, ends, rule, &mut Sum(&mut scattered));
             if !lit {
                 break;
             }
@@ -228,9 +230,6 @@ fn steps<const L: usize>(setup: &Setup<'_, L>, level: usize, zenith: f64, sunlig
     steps
 }
 
-/// The most species with sums of their own in [`along`].
-const SPECIES: usize = super::line::MOST_SPECIES;
-
 /// Radiance along a line, for each sun and azimuth: transmittance to the sun is taken for linear between two crossings.
 #[inline(always)]
 fn along<const L: usize, const AZIMUTHS: usize>(
@@ -242,8 +241,8 @@ fn along<const L: usize, const AZIMUTHS: usize>(
     radiance: &mut [[[f32; L]; AZIMUTHS]],
 ) {
     let turns = Turns::new(line.zenith, &azimuth_cosines::<AZIMUTHS>());
-    let species = setup.species.len();
-    let mut sums = [[[0.0_f32; L]; SPECIES]; AZIMUTHS];
+    let species = setup.optics.species.len();
+    let mut sums = [[[0.0_f32; L]; MOST_SPECIES]; AZIMUTHS];
     for (sun, radiance) in setup.grid.suns.sines_cosines.iter().zip(radiance) {
         for sums in &mut sums {
             sums[..species].fill([0.0; L]);
@@ -311,7 +310,7 @@ fn along<const L: usize, const AZIMUTHS: usize>(
                     let through = sunlight.at(0, nodes[a], fractions[a]);
                     let factor = there[a] * FRAC_1_PI as f32;
                     for j in 0..L {
-                        radiance[a][j] += factor * setup.albedo[j] as f32 * foot.through[j] * through[j];
+                        radiance[a][j] += factor * setup.optics.albedo[j] as f32 * foot.through[j] * through[j];
                     }
                 }
             }

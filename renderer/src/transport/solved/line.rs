@@ -1,7 +1,7 @@
 //! One line through the shells: where it crosses the levels, and light scattered into it, weighted and attenuated.
 
-use super::species::Species;
-use crate::atmosphere::{Chord, Medium};
+use super::Optics;
+use crate::atmosphere::{Chord, GAUSS_4};
 use crate::vectors::exp_minus;
 
 /// A crossing of a line with a level.
@@ -134,39 +134,34 @@ pub(super) struct Rule<'a> {
     pub(super) bends: &'a [f64],
 }
 
-/// Transmittance below which nothing more is looked for.
-const DARK: f64 = 1e-9;
+/// Optical depth beyond which nothing more is looked for: a transmittance of 1e-9.
+const DARK: f64 = 20.7;
 
 /// Most parts that an interval is divided into for its optical depth, and how much of it a part may have.
 const MOST_PARTS: (f64, f64) = (8.0, 0.8);
 
-/// Gauss' rule with two nodes on 0 to 1.
-const GAUSS_2: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
-
-/// Gauss' rule with four nodes on 0 to 1.
-const GAUSS_4: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_7, 0.173_927_422_568_726_9),
-    (0.330_009_478_207_571_9, 0.326_072_577_431_273_1),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_1),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_9),
-];
+/// Gauss' rule with two nodes on -1 to 1.
+const GAUSS_2: [(f64, f64); 2] = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
 
 /// Gives `take` the points of Gauss' rule (four nodes, or two) in the interval `from` to `to` of a chord, divided
-/// into parts, more where it is optically thick. False once it is too dark for anything to arrive.
+/// into parts, more where it is optically thick. False once it is too dark for anything to arrive, or where nothing scatters.
 #[inline(always)]
 pub(super) fn quadrature<const L: usize>(
     chord: &Chord<'_, L>,
-    medium: &Medium<L>,
-    species: &[Species<L>],
+    optics: &Optics<L>,
     (from, to): (f64, f64),
     Rule { fine, least, bends }: Rule<'_>,
     take: &mut impl Take<L>,
 ) -> bool {
+    let species = &optics.species;
+    if species.is_empty() {
+        return false;
+    }
     let (start, end) = (chord.point(from).depth, chord.point(to).depth);
     let mut thick = 0.0_f64;
     let mut lit = false;
-    for (start, end) in start.iter().zip(end) {
-        if (-start).exp() > DARK {
+    for (start, end) in start.into_iter().zip(end) {
+        if start < DARK {
             lit = true;
             thick = thick.max((end - start).min(12.0));
         }
@@ -197,15 +192,15 @@ pub(super) fn quadrature<const L: usize>(
     let mut start = from;
     for &end in &ends[..=count] {
         let parts = (parts * (end - start) / (to - from)).ceil().max(1.0);
-        let step = (end - start) / parts;
+        let half = 0.5 * (end - start) / parts;
         for part in 0..parts as u32 {
-            let begin = start + step * f64::from(part);
+            let middle = start + half * f64::from(2 * part + 1);
             for &(x, weight) in rule {
-                let s = begin + step * x;
+                let s = middle + half * x;
                 let through = exp_minus(chord.point(s).depth);
-                let densities = medium.densities_at(chord.altitude(s));
+                let densities = optics.medium.densities_at(chord.altitude(s));
                 for (row, one) in scattered.iter_mut().zip(species) {
-                    let factor = weight * step * densities[one.component];
+                    let factor = weight * half * densities[one.component];
                     *row = std::array::from_fn(|j| factor * one.scattering[j] * through[j]);
                 }
                 take.take(s, &scattered[..species.len()]);

@@ -34,7 +34,7 @@ use crate::vectors::vectorised;
 use first::{Scattering, Sunlight};
 use glam::DVec3;
 use grid::Grid;
-use harmonics::Moments;
+use harmonics::{MOST_DEGREE, Moments, RAYLEIGH};
 use mix::Mixer;
 use orders::{Around, Field};
 use pulp::NullaryFnOnce;
@@ -82,14 +82,44 @@ struct Optics<const L: usize> {
     albedo: [f64; L],
 }
 
+/// Share of the largest weight of a crossing below which a species that is no molecule is taken for one: the degrees above 2
+/// are left out.
+const FAINT: f64 = 1e-3;
+
+/// How many moments count at a crossing, and their highest degree.
+struct Reach {
+    count: usize,
+    degree: usize,
+}
+
+impl<const L: usize> Optics<L> {
+    /// Which moments count where the species have these weights; none if they have none.
+    #[inline(always)]
+    fn reach(&self, weights: &[[f64; L]]) -> Option<Reach> {
+        let largest = weights.iter().flatten().fold(0.0_f64, |most, w| most.max(w.abs()));
+        let counts = |weights: &[f64; L]| weights.iter().any(|w| w.abs() > FAINT * largest);
+        let peaked = self.species.iter().zip(weights).any(|(one, weights)| !one.is_molecular() && counts(weights));
+        let (count, degree) = if peaked { (self.moments.count(), self.moments.degree()) } else { (RAYLEIGH, 2) };
+        (largest > 0.0).then_some(Reach { count, degree })
+    }
+
+    /// Adds to each source, of the degree l, the sum over the species of b_l times their weights.
+    #[inline(always)]
+    fn add_sources(&self, weights: &[[f64; L]], sources: &mut [[f32; L]]) {
+        for (one, weights) in self.species.iter().zip(weights) {
+            for (source, coefficients) in sources.iter_mut().zip(&one.coefficients) {
+                for j in 0..L {
+                    source[j] += (weights[j] * coefficients[j]) as f32;
+                }
+            }
+        }
+    }
+}
+
 /// What all parts of the solution share.
 struct Setup<'a, const L: usize> {
     grid: &'a Grid,
-    moments: &'a Moments,
-    species: &'a [Species<L>],
-    medium: &'a Medium<L>,
-    columns: &'a Columns<L>,
-    albedo: &'a [f64; L],
+    optics: &'a Optics<L>,
 }
 
 impl Resolution {
@@ -103,11 +133,17 @@ impl Resolution {
     pub const COARSE: Self = Self { levels: 16, suns: 33, zeniths: [5, 3, 4], parts: 4, degree: 14 };
 }
 
+/// What a solution is off, of what it differs from one on the next coarser grid: that is off by two to four times as much.
+pub const FINER: f64 = 0.5;
+
 /// Relative change of the field by another order below which it counts as solved.
 const SOLVED: f64 = 5e-4;
 
 /// Why planes are refused.
 const ROUND: &str = "solved tables need a round planet: take --method paths";
+
+/// Why a resolution is refused.
+const SIZES: &str = "a solved table has at least 4 levels, 4 suns and 1 step between levels, and degrees up to 24";
 
 /// The most orders.
 const MOST_ORDERS: usize = 60;
@@ -116,7 +152,7 @@ impl<const L: usize> Solved<L> {
     /// Solves for `medium` over a planet of that shape whose ground has the Lambertian `albedo`.
     ///
     /// # Errors
-    /// [`SolveError::Refused`] between planes.
+    /// [`SolveError::Refused`] between planes, or of a resolution that is too small or has too high a degree.
     pub fn new(
         medium: &Medium<L>,
         shape: Shape,
@@ -124,6 +160,9 @@ impl<const L: usize> Solved<L> {
         resolution: &Resolution,
     ) -> Result<Self, SolveError> {
         let Shape::Sphere { radius_m } = shape else { return Err(SolveError::Refused(ROUND)) };
+        if resolution.levels < 4 || resolution.suns < 4 || resolution.parts < 1 || resolution.degree > MOST_DEGREE {
+            return Err(SolveError::Refused(SIZES));
+        }
         let degree = species::degree_of(medium, resolution.degree);
         let (species, medium) = species::scaled(medium, degree)?;
         let columns = Columns::new(&medium, shape, Tolerance::SOLVE);
@@ -146,10 +185,8 @@ impl<const L: usize> Solved<L> {
     }
 
     fn with(optics: Arc<Optics<L>>, radius: f64, resolution: &Resolution) -> Self {
-        let Optics { moments, species, medium, columns, albedo } = &*optics;
-        let grid = Grid::new(medium, radius, resolution);
-        let setup = Setup { grid: &grid, moments, species, medium, columns, albedo };
-        let (field, orders, residual) = setup.solve(resolution);
+        let grid = Grid::new(&optics.medium, radius, resolution);
+        let (field, orders, residual) = Setup { grid: &grid, optics: &optics }.solve(resolution);
         Self { optics, grid, field, orders, residual }
     }
 
@@ -205,7 +242,7 @@ impl<const L: usize> Setup<'_, L> {
         let levels = self.grid.levels.len();
         // Higher moments want closer directions.
         let zeniths =
-            if self.moments.degree() > 2 { resolution.zeniths.map(|n| n + n / 2) } else { resolution.zeniths };
+            if self.optics.moments.degree() > 2 { resolution.zeniths.map(|n| n + n / 2) } else { resolution.zeniths };
         let lines: Vec<_> = (0..levels)
             .into_par_iter()
             .map(|level| rays::lines(self, level, &self.grid.zeniths(level, zeniths)))
@@ -220,14 +257,14 @@ impl<const L: usize> Setup<'_, L> {
         let first = collect(&|level| {
             vectorised(First { setup: self, level, lines: &lines[level], sunlight: &sunlight, scattering: &scattering })
         });
-        let reflected = self.albedo.map(|a| (a * FRAC_1_PI) as f32);
+        let reflected = self.optics.albedo.map(|a| (a * FRAC_1_PI) as f32);
         let step = |field: &Field<L>| {
             collect(&|level| {
-                let (moments, suns) = (self.moments, &self.grid.suns);
+                let (moments, suns) = (&self.optics.moments, &self.grid.suns);
                 vectorised(Next { around: Around { lines: &lines[level], moments, suns, reflected }, field })
             })
         };
-        let mut mixer = Mixer::new(&first, self.moments.count());
+        let mut mixer = Mixer::new(&first, self.optics.moments.count());
         let mut field = first.clone();
         let mut orders = 1;
         loop {
@@ -261,7 +298,7 @@ impl<const L: usize> NullaryFnOnce for First<'_, L> {
     #[inline(always)]
     fn call(self) -> Moved<L> {
         let Self { setup, level, lines, sunlight, scattering } = self;
-        if setup.moments.degree() > 2 {
+        if setup.optics.moments.degree() > 2 {
             first::scatter::<L, 16>(setup, level, lines, sunlight, scattering)
         } else {
             first::scatter::<L, 8>(setup, level, lines, sunlight, scattering)

@@ -1,10 +1,9 @@
 //! The lines along which light reaches a level, with everything about them that does not depend on the sun.
 
 use super::Setup;
-use super::harmonics::RAYLEIGH;
 use super::line::{Rule, Spread, Stencil, crossings, quadrature};
-use super::species::Species;
 use crate::geometry::Place;
+use crate::vectors::exp_minus;
 use glam::DVec3;
 
 /// Where a line crosses a level.
@@ -42,9 +41,6 @@ pub(super) struct Line<const L: usize> {
     pub(super) foot: Option<Foot<L>>,
 }
 
-/// Share of the largest weight of a node below which a species that is no molecule is taken for one: the degrees above 2 are left out.
-pub(super) const FAINT: f64 = 1e-3;
-
 /// The lines of a level.
 pub(super) fn lines<const L: usize>(setup: &Setup<'_, L>, level: usize, zeniths: &[(f64, f64)]) -> Vec<Line<L>> {
     zeniths.iter().map(|&(zenith, weight)| line(setup, level, zenith, weight)).collect()
@@ -56,54 +52,40 @@ fn line<const L: usize>(setup: &Setup<'_, L>, level: usize, zenith: f64, weight:
     let radius = grid.level_radius(level);
     let mut line = Line { zenith, weight, nodes: Vec::new(), sources: Vec::new(), foot: None };
     let direction = DVec3::new(((1.0 - zenith) * (1.0 + zenith)).sqrt(), 0.0, zenith);
-    let Some(chord) = setup.columns.chord(Place::above(grid.levels[level]), direction) else { return line };
+    let Some(chord) = setup.optics.columns.chord(Place::above(grid.levels[level]), direction) else { return line };
     let (from, to) = chord.ends();
     let places = crossings(&chord, &grid.levels, from);
-    let width = setup.moments.degree() + 1;
+    let width = setup.optics.moments.degree() + 1;
     // Weights of each node in turn, by species.
-    let species = setup.species.len();
+    let species = setup.optics.species.len();
     let mut weights = vec![[0.0; L]; species * places.len()];
     for (i, ends) in places.windows(2).enumerate() {
         let rule = Rule { fine: true, least: 1.0, bends: &grid.bends };
         let stencil = Stencil::around(i, places.len());
         let mut spread = Spread { places: &places, stencil, weights: &mut weights };
-        if !quadrature(&chord, setup.medium, setup.species, (ends[0].s, ends[1].s), rule, &mut spread) {
+        if !quadrature(&chord, setup.optics, (ends[0].s, ends[1].s), rule, &mut spread) {
             break;
         }
     }
     let frame = |s: f64, r: f64| [(radius / r) as f32, ((s - from) / r) as f32];
     let mut harmonics = Vec::new();
     for (place, weights) in places.iter().zip(weights.chunks_exact(species.max(1))) {
-        let largest = weights.iter().flatten().fold(0.0_f64, |most, w| most.max(w.abs()));
-        if largest == 0.0 {
-            continue;
-        }
+        let Some(reach) = setup.optics.reach(weights) else { continue };
         let r = grid.level_radius(place.level);
         let zenith = (place.s / r).clamp(-1.0, 1.0);
-        setup.moments.at(zenith, &mut harmonics);
-        let peaked = |one: &Species<L>, weights: &[f64; L]| {
-            !one.is_molecular() && weights.iter().any(|w| w.abs() > FAINT * largest)
-        };
-        let all = setup.species.iter().zip(weights).any(|(one, weights)| peaked(one, weights));
-        let count = if all { setup.moments.count() } else { RAYLEIGH };
+        setup.optics.moments.at(zenith, &mut harmonics);
         line.nodes.push(Node {
             level: place.level,
             frame: frame(place.s, r),
             zenith: zenith as f32,
-            harmonics: harmonics[..count].iter().map(|&v| v as f32).collect(),
+            harmonics: harmonics[..reach.count].iter().map(|&v| v as f32).collect(),
         });
-        for l in 0..width {
-            let mut sum = [0.0; L];
-            for (one, weights) in setup.species.iter().zip(weights) {
-                for j in 0..L {
-                    sum[j] += weights[j] * one.coefficients[l][j];
-                }
-            }
-            line.sources.push(sum.map(|v| v as f32));
-        }
+        let first = line.sources.len();
+        line.sources.resize(first + width, [0.0; L]);
+        setup.optics.add_sources(weights, &mut line.sources[first..]);
     }
     if chord.ends_on_ground() {
-        let through = chord.total().map(|depth| (-depth).exp() as f32);
+        let through = exp_minus(chord.total()).map(|t| t as f32);
         line.foot = Some(Foot { frame: frame(to, grid.radius), through });
     }
     line

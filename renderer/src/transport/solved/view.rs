@@ -2,10 +2,8 @@
 
 use super::Solved;
 use super::grid::Between;
-use super::harmonics::RAYLEIGH;
+use super::harmonics::MOST_DEGREE;
 use super::line::{Crossing, MOST_SPECIES, Rule, Spread, Stencil, Take, crossings, quadrature};
-use super::rays::FAINT;
-use super::species::Species;
 use crate::atmosphere::Chord;
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
@@ -40,7 +38,7 @@ impl<const L: usize> Solved<L> {
     }
 
     #[inline(always)]
-    fn look(&self, from: Place, direction: DVec3, sun: DVec3, single: bool) -> [f64; L] {
+    pub(super) fn look(&self, from: Place, direction: DVec3, sun: DVec3, single: bool) -> [f64; L] {
         let mut sum = [0.0; L];
         let Some(chord) = self.optics.columns.chord(from, direction) else { return sum };
         let (begin, end) = chord.ends();
@@ -75,7 +73,7 @@ impl<const L: usize> Solved<L> {
                 let b = b.min(end);
                 if b > a {
                     let rule = Rule { fine, least: sight.parts(a, b), bends: &self.grid.bends };
-                    if !quadrature(&chord, &self.optics.medium, species, (a, b), rule, &mut taker) {
+                    if !quadrature(&chord, &self.optics, (a, b), rule, &mut taker) {
                         break 'line;
                     }
                     a = b;
@@ -83,8 +81,9 @@ impl<const L: usize> Solved<L> {
             }
         }
         if !single {
+            let mut harmonics = Vec::with_capacity(self.optics.moments.count());
             for (place, weights) in places.iter().zip(weights.chunks_exact(species.len().max(1))) {
-                sight.add_sources(place, weights, towards, &mut sum);
+                sight.add_sources(place, weights, towards, &mut harmonics, &mut sum);
             }
         }
         if chord.ends_on_ground() {
@@ -233,12 +232,16 @@ impl<const L: usize> Sight<'_, L> {
 
     /// Adds the sources at a crossing, with the weights of the species there.
     #[inline(always)]
-    fn add_sources(&self, place: &Crossing, weights: &[[f64; L]], towards: f64, sum: &mut [f64; L]) {
+    fn add_sources(
+        &self,
+        place: &Crossing,
+        weights: &[[f64; L]],
+        towards: f64,
+        harmonics: &mut Vec<f64>,
+        sum: &mut [f64; L],
+    ) {
         let solved = self.solved;
-        let largest = weights.iter().flatten().fold(0.0_f64, |most, w| most.max(w.abs()));
-        if largest == 0.0 {
-            return;
-        }
+        let Some(reach) = solved.optics.reach(weights) else { return };
         let r = solved.grid.level_radius(place.level);
         let start = self.from.up * (solved.grid.radius + self.from.altitude_m);
         let position = start + self.direction * self.chord.travelled(place.s);
@@ -251,25 +254,12 @@ impl<const L: usize> Sight<'_, L> {
         }
         let across = ((1.0 - zenith) * (1.0 + zenith) * (1.0 - there) * (1.0 + there)).max(0.0).sqrt();
         let turn = if across > 1e-9 { ((towards - zenith * there) / across).clamp(-1.0, 1.0) } else { 1.0 };
-        let mut harmonics = Vec::with_capacity(solved.optics.moments.count());
-        solved.optics.moments.at(zenith, &mut harmonics);
-        let peaked = |one: &Species<L>, weights: &[f64; L]| {
-            !one.is_molecular() && weights.iter().any(|w| w.abs() > FAINT * largest)
-        };
-        let all = solved.optics.species.iter().zip(weights).any(|(one, weights)| peaked(one, weights));
-        let count = if all { solved.optics.moments.count() } else { RAYLEIGH };
-        let degree = if all { solved.optics.moments.degree() } else { 2 };
-        let mut sources = [[0.0_f32; L]; super::harmonics::MOST_DEGREE + 1];
-        for (one, weights) in solved.optics.species.iter().zip(weights) {
-            for (source, coefficients) in sources[..=degree].iter_mut().zip(&one.coefficients) {
-                for j in 0..L {
-                    source[j] += (weights[j] * coefficients[j]) as f32;
-                }
-            }
-        }
-        let mut cosines = [1.0; super::harmonics::MOST_DEGREE + 1];
+        solved.optics.moments.at(zenith, harmonics);
+        let mut sources = [[0.0_f32; L]; MOST_DEGREE + 1];
+        solved.optics.add_sources(weights, &mut sources[..=reach.degree]);
+        let mut cosines = [1.0; MOST_DEGREE + 1];
         cosines[1] = turn;
-        for m in 2..=degree {
+        for m in 2..=reach.degree {
             cosines[m] = 2.0 * turn * cosines[m - 1] - cosines[m - 2];
         }
         let (suns, moments) = (solved.grid.suns.count(), solved.optics.moments.count());
@@ -277,7 +267,7 @@ impl<const L: usize> Sight<'_, L> {
         let rows = &solved.field.moments[from..from + 4 * moments];
         let (below, above) = rows.split_at(2 * moments);
         let ((a, b), (c, d)) = (below.split_at(moments), above.split_at(moments));
-        let pairs = solved.optics.moments.pairs()[..count].iter().zip(&harmonics);
+        let pairs = solved.optics.moments.pairs()[..reach.count].iter().zip(harmonics.iter());
         let mut total = [0.0_f32; L];
         for ((((&(l, m), harmonic), (a, b)), c), d) in pairs.zip(a.iter().zip(b)).zip(c).zip(d) {
             let factor = (harmonic * cosines[m]) as f32;
