@@ -32,11 +32,8 @@ impl Tolerance {
 /// Largest change of the logarithm of a density within one step of the quadrature; four Gauss points then leave 1e-9.
 const MOST_CHANGE: f64 = 0.5;
 
-/// The most rows of one cell: what a root of the distance to a jump can ask for.
+/// The most rows of one cell.
 const MOST_ROWS: usize = 200;
-
-/// How far below a jump in m the last line is that counts as below it.
-const BELOW_A_JUMP: f64 = 1e-6;
 
 /// A step of the quadrature: altitudes in m, within one interval of the medium and one cell of the table.
 #[derive(Debug, Clone, Copy)]
@@ -52,6 +49,8 @@ struct Exact<'a, const L: usize> {
     shape: Shape,
     steps: Vec<Step>,
     tolerance: Tolerance,
+    /// Altitudes in m at which the extinction jumps.
+    jumps: Vec<f64>,
 }
 
 /// Optical depths at each node from the start of a line, and the distance of each node from the perigee; nothing below the start.
@@ -61,24 +60,45 @@ struct Row<const L: usize> {
     start: [f64; L],
 }
 
+impl<const L: usize> Row<L> {
+    /// What means at a node count from: the jump `base` below it, or the start of the line if that is higher.
+    fn begins(&self, base: usize) -> (f64, [f64; L]) {
+        if self.distances[base] > self.distances[0] {
+            (self.distances[base], self.depths[base])
+        } else {
+            (self.distances[0], [0.0; L])
+        }
+    }
+
+    /// Mean extinction up to node `k`.
+    fn mean(&self, k: usize, base: usize) -> [f64; L] {
+        let (from, before) = self.begins(base);
+        let length = self.distances[k] - from;
+        if length > 0.0 { std::array::from_fn(|j| (self.depths[k][j] - before[j]) / length) } else { self.start }
+    }
+}
+
 impl<const L: usize> Columns<L> {
     /// The columns of `medium`.
     #[must_use]
     pub fn new(medium: &Medium<L>, shape: Shape, tolerance: Tolerance) -> Self {
-        let mut exact = Exact { medium, shape, steps: Vec::new(), tolerance };
-        exact.steps = steps(medium);
+        let mut exact = Exact { medium, shape, steps: steps(medium), tolerance, jumps: jumps(medium) };
         let nodes = exact.altitudes();
         exact.cut(&nodes);
+        let jumps = (0..nodes.len()).filter(|&k| exact.jumps.contains(&nodes[k])).collect();
+        let base = |&z: &f64| exact.jumps.iter().rfind(|&&jump| jump < z);
+        let index = |jump: &f64| nodes.iter().position(|z| z == jump).unwrap_or(0);
+        let bases: Vec<usize> = nodes.iter().map(|z| base(z).map_or(0, index)).collect();
         let extinction = nodes.windows(2).map(|ends| exact.ends(ends[0], ends[1])).collect();
         let (limb, ground) = match shape {
             // One row serves all directions; a second copy closes the cell.
             Shape::Flat => {
-                let rows = exact.rows(vec![(0.0, exact.row(0.0, &nodes)), (1.0, exact.row(0.0, &nodes))]);
+                let rows = rows(vec![(0.0, exact.row(0.0, &nodes)), (1.0, exact.row(0.0, &nodes))], &bases);
                 (rows.clone(), rows)
             }
-            Shape::Sphere { radius_m } => (exact.limb(&nodes), exact.ground(radius_m, &nodes)),
+            Shape::Sphere { radius_m } => (exact.limb(&nodes, &bases), exact.ground(radius_m, &nodes, &bases)),
         };
-        Self { shape, altitudes: Lookup::new(nodes), extinction, limb, ground }
+        Self { shape, altitudes: Lookup::new(nodes), jumps, bases, extinction, limb, ground }
     }
 }
 
@@ -94,6 +114,29 @@ fn steps<const L: usize>(medium: &Medium<L>) -> Vec<Step> {
         }
     }
     steps
+}
+
+/// Altitudes at which the extinction jumps.
+fn jumps<const L: usize>(medium: &Medium<L>) -> Vec<f64> {
+    let nodes = medium.nodes();
+    (1..nodes.len() - 1)
+        .filter(|&i| {
+            let (below, above) = (medium.extinction_in(i - 1, 1.0), medium.extinction_in(i, 0.0));
+            below.iter().zip(&above).any(|(a, b)| (a - b).abs() > 1e-9 * (a.abs() + b.abs()))
+        })
+        .map(|i| nodes[i])
+        .collect()
+}
+
+/// Packs rows as the tables hold them: mean extinctions, below its start that of the start.
+fn rows<const L: usize>(rows: Vec<(f64, Row<L>)>, bases: &[usize]) -> Rows<L> {
+    let mut means = Vec::with_capacity(rows.len() * bases.len());
+    for (_, row) in &rows {
+        means.extend(bases.iter().enumerate().map(|(k, &base)| row.mean(k, base).map(|mean| mean as f32)));
+    }
+    let starts = rows.iter().map(|(_, row)| row.start).collect();
+    let under = vec![None; rows.len()];
+    Rows { at: Lookup::new(rows.into_iter().map(|(at, _)| at).collect()), under, means, starts }
 }
 
 impl<const L: usize> Exact<'_, L> {
@@ -184,26 +227,12 @@ impl<const L: usize> Exact<'_, L> {
         let mut kept = vec![0.0];
         let mut at = 0;
         for i in 1..intervals.len() {
-            if i + 1 == intervals.len() || self.jumps(i) {
+            if i + 1 == intervals.len() || self.jumps.contains(&intervals[i]) {
                 self.divide(intervals[at], intervals[i], 0, &mut kept);
                 at = i;
             }
         }
         kept
-    }
-
-    /// Whether the extinction jumps at node `i` of the medium.
-    fn jumps(&self, i: usize) -> bool {
-        let z = self.medium.nodes()[i];
-        let (below, above) = (self.extinction(i - 1, z), self.extinction(i, z));
-        below.iter().zip(&above).any(|(a, b)| (a - b).abs() > 1e-9 * (a.abs() + b.abs()))
-    }
-
-    /// Whether the extinction jumps at an altitude.
-    fn jumps_at(&self, altitude: f64) -> bool {
-        let nodes = self.medium.nodes();
-        let i = nodes.partition_point(|&z| z < altitude);
-        i > 0 && i + 1 < nodes.len() && nodes[i] == altitude && self.jumps(i)
     }
 
     /// Appends to `kept` the nodes in (bottom, top] that are needed.
@@ -235,13 +264,15 @@ impl<const L: usize> Exact<'_, L> {
         let thickness = top - bottom;
         let mut lines = vec![0.0];
         if let Shape::Sphere { radius_m } = self.shape {
-            lines.extend([0.0, 1.0, 4.0].map(|cells| (bottom - cells * thickness).max(0.0)));
+            lines.extend([0.0, 0.02, 0.3, 1.0, 4.0].map(|cells| (bottom - cells * thickness).max(0.0)));
             lines.extend([5e-4, 5e-3, 5e-2, 0.999].map(|share| -share * radius_m));
         }
         // Planes are crossed at any slant.
         let slant = if self.shape == Shape::Flat { 10.0 } else { 1.0 };
+        // Depths count from the last jump.
+        let base = self.jumps.iter().rfind(|&&jump| jump <= bottom).map_or(0.0, |&jump| jump);
         lines.into_iter().all(|p| {
-            let start = p.max(0.0);
+            let start = p.max(base);
             let origin = self.distance(p, start);
             let mut depths = [[0.0; L]; PARTS as usize + 1];
             self.add_between(p, start, bottom, &mut depths[0]);
@@ -259,11 +290,11 @@ impl<const L: usize> Exact<'_, L> {
                 (0..L).all(|j| {
                     let upper = depths[PARTS as usize][j] / b;
                     let upper_slope = (high[j] - upper) * thickness * self.stretch(p, top) / b;
-                    let (weights, lower, lower_slope) = if a > 0.0 {
-                        let lower = depths[0][j] / a;
-                        (between, lower, (low[j] - lower) * thickness * self.stretch(p, bottom) / a)
+                    let lower = if a > 0.0 { depths[0][j] / a } else { low[j] };
+                    let (weights, lower_slope) = if a <= 0.0 || (p > 0.0 && bottom - p < thickness) {
+                        (from_start, 0.0)
                     } else {
-                        (from_start, low[j], 0.0)
+                        (between, (low[j] - lower) * thickness * self.stretch(p, bottom) / a)
                     };
                     let [w, x, y, z] = weights;
                     let mean = w * lower + x * upper + y * lower_slope + z * upper_slope;
@@ -291,23 +322,26 @@ impl<const L: usize> Exact<'_, L> {
 
     /// Whether the row in the middle of two is their mean, as seen from the start of the line and from the top; `from` is
     /// the first node that counts.
-    fn mean_holds(&self, row_a: &Row<L>, row_b: &Row<L>, middle: &Row<L>, from: usize) -> bool {
-        let off = |k: usize| -> [f64; L] {
-            let [length, length_a, length_b] = [middle, row_a, row_b].map(|row| row.distances[k] - row.distances[0]);
-            let mean = |row: &Row<L>, length: f64, j: usize| {
-                if length > 0.0 { row.depths[k][j] / length } else { row.start[j] }
-            };
-            std::array::from_fn(|j| {
-                0.5 * (mean(row_a, length_a, j) + mean(row_b, length_b, j)) * length - middle.depths[k][j]
-            })
-        };
-        let last = middle.distances.len() - 1;
-        let (whole_off, whole) = (off(last), middle.depths[last]);
+    fn mean_holds(&self, [row_a, row_b, middle]: [&Row<L>; 3], bases: &[usize], from: usize) -> bool {
+        let last = bases.len() - 1;
+        let mut depths = middle.depths.clone();
+        for k in from..=last {
+            let base = bases[k];
+            let (a, b) = (row_a.mean(k, base), row_b.mean(k, base));
+            let (begin, _) = middle.begins(base);
+            let counts_from_jump = begin > middle.distances[0];
+            depths[k] = std::array::from_fn(|j| {
+                let before = if counts_from_jump { depths[base][j] } else { 0.0 };
+                before + 0.5 * (a[j] + b[j]) * (middle.distances[k] - begin)
+            });
+        }
+        let off = |k: usize, j: usize| depths[k][j] - middle.depths[k][j];
+        let whole = middle.depths[last];
         (from..=last).all(|k| {
-            let (off, depth) = (off(k), middle.depths[k]);
             (0..L).all(|j| {
-                off[j].abs() <= self.tolerance.allowed(depth[j])
-                    && (whole_off[j] - off[j]).abs() <= self.tolerance.allowed(whole[j] - depth[j])
+                let depth = middle.depths[k][j];
+                off(k, j).abs() <= self.tolerance.allowed(depth)
+                    && (off(last, j) - off(k, j)).abs() <= self.tolerance.allowed(whole[j] - depth)
             })
         })
     }
@@ -318,7 +352,7 @@ impl<const L: usize> Exact<'_, L> {
         (a, row_a): (f64, Row<L>),
         (b, row_b): (f64, Row<L>),
         perigee: &(dyn Fn(f64) -> f64 + Sync),
-        nodes: &[f64],
+        (nodes, bases): (&[f64], &[usize]),
         from: usize,
     ) -> Vec<(f64, Row<L>)> {
         let mut done = vec![(a, row_a)];
@@ -329,7 +363,7 @@ impl<const L: usize> Exact<'_, L> {
             let fits = done.len() + todo.len() >= MOST_ROWS || middle <= *last || middle >= x;
             let between = if fits { None } else { Some(self.row(perigee(middle), nodes)) };
             match between {
-                Some(between) if !self.mean_holds(last_row, &row, &between, from) => {
+                Some(between) if !self.mean_holds([last_row, &row, &between], bases, from) => {
                     todo.push((x, row));
                     todo.push((middle, between));
                 }
@@ -340,28 +374,49 @@ impl<const L: usize> Exact<'_, L> {
     }
 
     /// Rows for lines above the ground: every node of altitude is a perigee, with others between.
-    fn limb(&self, nodes: &[f64]) -> Rows<L> {
+    ///
+    /// On a line that turns at p below a jump at z, what lies below the jump is crossed over a length that goes as
+    /// q = sqrt(z - p), and with it all depths above: in such a cell rows go by -q instead of p.
+    fn limb(&self, nodes: &[f64], bases: &[usize]) -> Rows<L> {
         let cells: Vec<Vec<(f64, Row<L>)>> = (0..nodes.len() - 1)
             .into_par_iter()
             .map(|i| {
-                // The upper row still begins in this cell: below a jump, if there is one.
-                let below = if self.jumps_at(nodes[i + 1]) { nodes[i + 1] - BELOW_A_JUMP } else { nodes[i + 1] };
-                let [a, b] = [nodes[i], below].map(|p| (p, self.row(p, nodes)));
-                let mut rows = self.refine(a, b, &|p| p, nodes, i + 1);
-                if below == nodes[i + 1] {
+                let (bottom, top) = (nodes[i], nodes[i + 1]);
+                if !self.jumps.contains(&top) {
+                    let [a, b] = [bottom, top].map(|p| (p, self.row(p, nodes)));
+                    let mut rows = self.refine(a, b, &|p| p, (nodes, bases), i + 1);
                     rows.pop();
+                    return rows;
+                }
+                // The upper row still begins below the jump.
+                let below = top.next_down();
+                let perigee = |x: f64| (top - x * x).clamp(bottom, below);
+                let [a, b] = [bottom, below].map(|p| (-(top - p).sqrt(), self.row(p, nodes)));
+                let mut rows = self.refine(a, b, &perigee, (nodes, bases), i + 1);
+                for (x, _) in &mut rows {
+                    *x = perigee(*x);
                 }
                 rows
             })
             .collect();
         let top = nodes[nodes.len() - 1];
-        let mut rows: Vec<_> = cells.into_iter().flatten().collect();
-        rows.push((top, self.row(top, nodes)));
-        self.rows(rows)
+        let mut under = Vec::new();
+        for (rows, &above) in cells.iter().zip(&nodes[1..]) {
+            let jump = self.jumps.contains(&above).then_some(above);
+            under.extend(rows.iter().map(|_| jump));
+            // Nothing lies between the last row of a cell under a jump and the jump itself.
+            if let (Some(last), Some(_)) = (under.last_mut(), jump) {
+                *last = None;
+            }
+        }
+        under.push(None);
+        let mut all: Vec<_> = cells.into_iter().flatten().collect();
+        all.push((top, self.row(top, nodes)));
+        Rows { under, ..rows(all, bases) }
     }
 
     /// Rows for lines that cut the planet, by the cosine of the zenith angle at the ground.
-    fn ground(&self, radius_m: f64, nodes: &[f64]) -> Rows<L> {
+    fn ground(&self, radius_m: f64, nodes: &[f64], bases: &[usize]) -> Rows<L> {
         // Close enough that the middle of two tells of all between.
         const FIRST: usize = 32;
         let cosines: Vec<f64> = (0..=FIRST).map(|i| (i as f64 / FIRST as f64).powi(3)).collect();
@@ -370,28 +425,14 @@ impl<const L: usize> Exact<'_, L> {
             .par_windows(2)
             .map(|ends| {
                 let [a, b] = [ends[0], ends[1]].map(|mu| (mu, self.row(perigee(mu), nodes)));
-                let mut rows = self.refine(a, b, &perigee, nodes, 1);
+                let mut rows = self.refine(a, b, &perigee, (nodes, bases), 1);
                 rows.pop();
                 rows
             })
             .collect();
-        let mut rows: Vec<_> = cells.into_iter().flatten().collect();
-        rows.push((1.0, self.row(perigee(1.0), nodes)));
-        self.rows(rows)
-    }
-
-    /// Packs rows as the tables hold them: mean extinctions, below its start that of the start.
-    fn rows(&self, rows: Vec<(f64, Row<L>)>) -> Rows<L> {
-        let mut means = Vec::with_capacity(rows.len() * rows[0].1.distances.len());
-        for (_, row) in &rows {
-            for (depth, distance) in row.depths.iter().zip(&row.distances) {
-                let length = distance - row.distances[0];
-                let mean = |j: usize| if length > 0.0 { depth[j] / length } else { row.start[j] };
-                means.push(std::array::from_fn(|j| mean(j) as f32));
-            }
-        }
-        let starts = rows.iter().map(|(_, row)| row.start).collect();
-        Rows { at: Lookup::new(rows.into_iter().map(|(at, _)| at).collect()), means, starts }
+        let mut all: Vec<_> = cells.into_iter().flatten().collect();
+        all.push((1.0, self.row(perigee(1.0), nodes)));
+        rows(all, bases)
     }
 }
 

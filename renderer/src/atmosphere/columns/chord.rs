@@ -107,7 +107,7 @@ impl<const L: usize> Columns<L> {
         } else {
             (&self.limb, perigee, 0.0)
         };
-        let (row, share) = table.at.locate(at);
+        let (row, share) = table.locate(at);
         let to = if ground { -origin } else { end };
         let chord = Chord {
             columns: self,
@@ -143,6 +143,15 @@ impl<const L: usize> Columns<L> {
 }
 
 impl<const L: usize> Rows<L> {
+    /// The row below `at`, and the share of the next.
+    #[inline(always)]
+    fn locate(&self, at: f64) -> (usize, f64) {
+        let (row, share) = self.at.locate(at);
+        let Some(jump) = self.under[row] else { return (row, share) };
+        let [a, b] = [row, row + 1].map(|row| (jump - self.at.nodes()[row]).sqrt());
+        (row, ((a - (jump - at).max(0.0).sqrt()) / (a - b)).clamp(0.0, 1.0))
+    }
+
     /// Rows `row` and `row + 1`, each of `nodes` nodes.
     #[inline(always)]
     fn pair(&self, nodes: usize, row: usize, share: f64) -> Pair<'_, L> {
@@ -246,11 +255,14 @@ impl<const L: usize> Chord<'_, L> {
     #[inline(always)]
     pub fn total(&self) -> [f64; L] {
         let last = self.columns.altitudes.nodes().len() - 1;
-        let length = if self.ground { 0.0 } else { self.to - self.origin };
-        let means = self.rows.means(last);
+        if self.ground {
+            return self.passed.map(|depth| -depth);
+        }
+        let base = self.columns.bases[last];
+        let (length, means, before) = (self.to - self.base_distance(base), self.rows.means(last), self.before(base));
         let mut total = [0.0; L];
         for j in 0..L {
-            total[j] = means[j] * length - self.passed[j];
+            total[j] = means[j] * length + (before[j] - self.passed[j]);
         }
         total
     }
@@ -297,38 +309,77 @@ impl<const L: usize> Chord<'_, L> {
         self.distance(self.columns.altitudes.nodes()[k])
     }
 
+    /// Distance from the perigee of what means count from: a jump, or the start of the line if that is higher.
+    #[inline(always)]
+    fn base_distance(&self, base: usize) -> f64 {
+        if base > self.lowest { self.node_distance(base) } else { self.origin }
+    }
+
+    /// Optical depths from the start of the line to a jump above it; 0 if it is below.
+    #[inline(always)]
+    fn before(&self, base: usize) -> [f64; L] {
+        let mut sum = [0.0; L];
+        let mut jump = base;
+        while jump > self.lowest {
+            let below = self.columns.bases[jump];
+            let length = self.node_distance(jump) - self.base_distance(below);
+            for (sum, mean) in sum.iter_mut().zip(self.rows.means(jump)) {
+                *sum += mean * length;
+            }
+            jump = below;
+        }
+        sum
+    }
+
     /// Cell `k` of this line; the lowest begins where the line does.
     #[inline(always)]
     fn cell(&self, k: usize) -> Cell {
         let nodes = self.columns.altitudes.nodes();
         let (from, to) = (nodes[k], nodes[k + 1]);
-        let start = k == self.lowest;
-        // Where a line turns just below the cell, the mean from there has a slope that rounding or a jump make as steep as
-        // one over that distance; the mean from the bottom of the cell has not.
-        let turned = k == self.lowest + 1 && self.perigee.0 > 0.0 && from - self.perigee.0 < to - from;
+        let base = self.columns.bases[k + 1];
+        let base_distance = self.base_distance(base);
+        // Means count from the bottom of the cell if the line starts in it or a jump is there.
+        let start = k == self.lowest || base == k;
+        // Where a line turns close below the cell the slope of the mean at its bottom is lost to rounding.
+        let close = start || (self.perigee.0 > 0.0 && from - self.perigee.0 < to - from);
         let from = if start { from.max(self.perigee.0) } else { from };
         let height = to - from;
-        let low_length = if start { 0.0 } else { self.node_distance(k) - self.origin };
-        let skipped = if turned { low_length } else { 0.0 };
-        // Height (ds/dh) / length for a length that counts from the line's start or from the cell's bottom; ds/dh = (R + h) / s.
+        let low_length = if start { 0.0 } else { self.node_distance(k) - base_distance };
+        // Height (ds/dh) / length; ds/dh = (R + h) / s.
         let factor = |h: f64, s: f64, length: f64| match self.columns.shape {
             _ if length <= 0.0 => 0.0,
             Shape::Flat => height * self.slant / length,
             Shape::Sphere { .. } => height * (self.perigee.1 + (h - self.perigee.0)) / (s * length),
         };
-        let low_factor = if start || turned { 0.0 } else { factor(from, low_length + self.origin, low_length) };
+        let low_factor = if close { 0.0 } else { factor(from, low_length + base_distance, low_length) };
         let high_distance = self.node_distance(k + 1);
-        let high_length = high_distance - self.origin;
-        let high_factor = factor(to, high_distance, high_length - skipped);
+        let high_length = high_distance - base_distance;
+        let high_factor = factor(to, high_distance, high_length);
         let per_height = if height > 0.0 { 1.0 / height } else { 0.0 };
-        Cell { k, start, skipped, from, per_height, low_length, low_factor, high_length, high_factor }
+        Cell {
+            k,
+            start,
+            close,
+            base,
+            base_distance,
+            from,
+            per_height,
+            low_length,
+            low_factor,
+            high_length,
+            high_factor,
+        }
     }
 
     /// What the ends of a cell have: means, and extinctions.
     #[inline(always)]
     fn ends_of(&self, cell: &Cell) -> [[f64; L]; 4] {
         let [at_low, at_high] = self.columns.extinction[cell.k];
-        let low = if cell.start { self.rows.begins() } else { self.rows.means(cell.k) };
+        let low = match cell.start {
+            true if cell.k == self.lowest => self.rows.begins(),
+            true => at_low,
+            false => self.rows.means(cell.k),
+        };
         [low, self.rows.means(cell.k + 1), at_low, at_high]
     }
 
@@ -336,15 +387,7 @@ impl<const L: usize> Chord<'_, L> {
     #[inline(always)]
     fn weights(cell: &Cell, t: f64) -> [[f64; 4]; 2] {
         let (a, b) = (cell.low_factor, cell.high_factor);
-        if cell.skipped > 0.0 {
-            // The mean from the cell's bottom up to its top is (high high_length - low skipped) / (high_length - skipped).
-            let share = 1.0 / (cell.high_length - cell.skipped);
-            return from_start_weights(t).map(|w| {
-                let high = (w[1] - b * w[3]) * share;
-                [-high * cell.skipped, high * cell.high_length, w[0], b * w[3]]
-            });
-        }
-        let both = if cell.start { from_start_weights(t) } else { between_weights(t) };
+        let both = if cell.close { from_start_weights(t) } else { between_weights(t) };
         // The slopes of the mean at the ends are factor (extinction - mean).
         both.map(|w| [w[0] - a * w[2], w[1] - b * w[3], a * w[2], b * w[3]])
     }
@@ -352,13 +395,14 @@ impl<const L: usize> Chord<'_, L> {
     /// Optical depths from the line's start to a distance from the perigee, where the altitude is `altitude`.
     #[inline(always)]
     fn depths(&self, cell: &Cell, altitude: f64, distance: f64) -> [f64; L] {
-        let length = (distance - self.origin - cell.skipped).max(0.0);
+        let length = (distance - cell.base_distance).max(0.0);
         let [value, _] = Self::weights(cell, cell.fraction(altitude));
         let mut depth = [0.0; L];
         let [low, high, at_low, at_high] = self.ends_of(cell);
+        let before = self.before(cell.base);
         for j in 0..L {
             let ends = [low[j], high[j], at_low[j], at_high[j]];
-            depth[j] = ends[0] * cell.skipped + length * dot(value, ends);
+            depth[j] = before[j] + length * dot(value, ends);
         }
         depth
     }
@@ -366,7 +410,7 @@ impl<const L: usize> Chord<'_, L> {
     /// As [`Chord::depths`], with the slopes.
     #[inline(always)]
     fn point_of_line(&self, cell: &Cell, altitude: f64, distance: f64) -> Point<L> {
-        let length = (distance - self.origin - cell.skipped).max(0.0);
+        let length = (distance - cell.base_distance).max(0.0);
         let [value, derivative] = Self::weights(cell, cell.fraction(altitude));
         // dh/ds = s / (R + h)
         let by_distance = cell.per_height
@@ -376,10 +420,11 @@ impl<const L: usize> Chord<'_, L> {
             };
         let mut point = Point { depth: [0.0; L], slope: [0.0; L] };
         let [low, high, at_low, at_high] = self.ends_of(cell);
+        let before = self.before(cell.base);
         for j in 0..L {
             let ends = [low[j], high[j], at_low[j], at_high[j]];
             let mean = dot(value, ends);
-            point.depth[j] = ends[0] * cell.skipped + mean * length;
+            point.depth[j] = before[j] + mean * length;
             point.slope[j] = mean + dot(derivative, ends) * length * by_distance;
         }
         point
@@ -402,19 +447,32 @@ impl<const L: usize> Chord<'_, L> {
     #[inline]
     fn invert(&self, hero: usize, target: f64) -> (f64, Point<L>) {
         let nodes = self.columns.altitudes.nodes();
-        // Whether the depth of node k is at most the target: mean (s - origin) <= target, squared where s is a root.
+        // Between which jumps: the node and the depth from which means count, and the first node that is too far.
+        let (mut low, mut high) = (self.lowest, nodes.len() - 1);
+        let mut before = 0.0;
+        for &jump in self.columns.jumps.iter().filter(|&&jump| jump > self.lowest) {
+            let from = self.base_distance(self.columns.bases[jump]);
+            let there = before + self.rows.mean(jump, hero) * (self.node_distance(jump) - from);
+            if there > target {
+                high = jump;
+                break;
+            }
+            (low, before) = (jump, there);
+        }
+        // Whether the depth of node k is at most the target: mean (s - s_base) <= target, squared where s is a root.
+        let target = target - before;
+        let from = self.base_distance(low);
         let passed = |k: usize| {
             let mean = self.rows.mean(k, hero);
             match self.columns.shape {
-                Shape::Flat => mean * nodes[k] * self.slant <= target,
+                Shape::Flat => mean * (nodes[k] * self.slant - from) <= target,
                 Shape::Sphere { .. } => {
                     let above = (nodes[k] - self.perigee.0).max(0.0);
-                    let reach = target + mean * self.origin;
+                    let reach = target + mean * from;
                     mean * mean * (above * (2.0 * self.perigee.1 + above)) <= reach * reach
                 }
             }
         };
-        let (mut low, mut high) = (self.lowest, nodes.len() - 1);
         while high - low > 1 {
             let middle = (low + high) / 2;
             if passed(middle) { low = middle } else { high = middle }
@@ -422,12 +480,12 @@ impl<const L: usize> Chord<'_, L> {
         let cell = self.cell(low);
         let [at_low, at_high] = &self.columns.extinction[low];
         let (bottom, slope_low) = if cell.start {
-            (0.0, self.rows.start(hero))
+            (0.0, if low == self.lowest { self.rows.start(hero) } else { at_low[hero] })
         } else {
             (self.rows.mean(low, hero) * cell.low_length, at_low[hero])
         };
         let rise = self.rows.mean(low + 1, hero) * cell.high_length - bottom;
-        let (mut least, mut most) = (self.origin + cell.low_length, self.origin + cell.high_length);
+        let (mut least, mut most) = (cell.base_distance + cell.low_length, cell.base_distance + cell.high_length);
         let point = |s: f64| self.point_of_line(&cell, self.altitude(s), s);
         if rise <= 0.0 || target - bottom >= rise {
             return (most, point(most));
@@ -441,7 +499,7 @@ impl<const L: usize> Chord<'_, L> {
         let mut s = least + straight * (w[1] + slow * w[2] + fast * w[3]).clamp(0.0, 1.0);
         for _ in 0..60 {
             let here = point(s);
-            let off = here.depth[hero] - target;
+            let off = here.depth[hero] - before - target;
             if off.abs() <= INVERSION * rise {
                 return (s, here);
             }
@@ -468,17 +526,20 @@ const INVERSION: f64 = 1e-7;
 /// A cell of altitude on one line.
 struct Cell {
     k: usize,
-    /// Whether the line starts in it.
+    /// Whether the line or its means start in it.
     start: bool,
-    /// Distance from the line's start to where the cell's means count from: 0, or its bottom.
-    skipped: f64,
+    /// Whether the line turns so close below that the mean's slope at the bottom is not used.
+    close: bool,
+    /// The jump from which means count, if it is above the line's start, and the distance of either from the perigee.
+    base: usize,
+    base_distance: f64,
     /// Its lower end in m, and 1 / height.
     from: f64,
     per_height: f64,
-    /// Distances of its ends from the line's start.
+    /// Distances of its ends from the base.
     low_length: f64,
     high_length: f64,
-    /// height (ds/dh) / length, the length from where the means count: what turns extinction - mean into the derivative of the mean by the fraction of the cell.
+    /// height (ds/dh) / length, the length from the base: what turns extinction - mean into the derivative of the mean by the fraction of the cell.
     low_factor: f64,
     high_factor: f64,
 }

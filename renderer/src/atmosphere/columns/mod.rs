@@ -11,7 +11,8 @@
 //! table of their own: depths count from the ground, rows go by the cosine of the zenith angle there.
 //!
 //! Nodes follow from the medium and from [`Tolerance`]: nodes of h where the extinction jumps and wherever the cubic needs
-//! them, rows wherever the middle of two is not their mean. Between planes all lines are alike, and the table is one row.
+//! them, rows wherever the middle of two is not their mean. A line that turns just below a jump has a depth there that goes as the
+//! root of the distance to the jump and would spoil all means above: above a jump they count from it, and rows below it go by that root. Between planes all lines are alike, and the table is one row.
 //! The numbers are per wavelength, not per species: a look-up then needs no sum over species, and scenes have about as many
 //! of one as of the other.
 
@@ -32,6 +33,9 @@ pub struct Columns<const L: usize> {
     shape: Shape,
     /// Altitudes of the nodes in m, from 0 to the top.
     altitudes: Lookup,
+    /// Nodes at which the extinction jumps, and of every node the last of them below it, 0 if there is none.
+    jumps: Vec<usize>,
+    bases: Vec<usize>,
     /// Extinction coefficients [cell][bottom, top] in m^-1, each from inside the cell.
     extinction: Vec<[[f64; L]; 2]>,
     limb: Rows<L>,
@@ -43,7 +47,9 @@ pub struct Columns<const L: usize> {
 struct Rows<const L: usize> {
     /// Perigee altitudes in m, or cosines at the ground.
     at: Lookup,
-    /// Mean extinction in m^-1 from the start of the line [row][node].
+    /// Altitude in m of the jump below which a row and the next lie: their share goes by the root of the distance to it.
+    under: Vec<Option<f64>>,
+    /// Mean extinction in m^-1 [row][node] from the start of the line, or from the last jump below the node if that is higher.
     means: Vec<[f32; L]>,
     /// Extinction at the start of each row.
     starts: Vec<[f64; L]>,

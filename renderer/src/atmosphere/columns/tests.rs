@@ -20,6 +20,11 @@ fn exponential(scale_height: f64, top: f64) -> Curve {
 
 /// Air, a low haze with a jump at 2 km, and a layer of ozone.
 fn medium() -> Medium<2> {
+    hazy([2e-5, 3e-5])
+}
+
+/// The same with the extinction of the haze.
+fn hazy(extinction: [f64; 2]) -> Medium<2> {
     let axis = Axis::new("altitude", "m", vec![1e4, 2.5e4, 4e4]).expect("valid").beyond(Outside::Zero);
     let ozone = Curve::new(axis, Scale::Linear, vec![0.0, 1.0, 0.0]).expect("valid");
     let axis = Axis::new("altitude", "m", vec![0.0, 2e3]).expect("valid").between(Interpolation::Step);
@@ -28,7 +33,7 @@ fn medium() -> Medium<2> {
         vec![
             component(exponential(8e3, TOP), [2.7e-5, 5e-6]),
             component(exponential(1.2e3, TOP), [1e-4, 2e-4]),
-            component(haze, [2e-5, 3e-5]),
+            component(haze, extinction),
             component(ozone, [1e-7, 1e-6]),
         ],
         TOP,
@@ -177,6 +182,31 @@ fn lines_that_turn_just_below_a_node_have_the_depths_of_the_quadrature() {
                             close(table, exact),
                             "{radius_m}, {below} below {node}, {above} above: {table} for {exact}"
                         );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_thick_layer_that_ends_sharply_is_crossed_right_on_the_largest_planets() {
+    // Depths to 1e4 below the jump, so lines that leave it and those that have left it differ by all of it.
+    let medium = hazy([2.4e-3, 1e-3]);
+    for radius_m in [RADIUS, 1e9, 5.3e9, 1e10] {
+        let shape = Shape::Sphere { radius_m };
+        let columns = Columns::new(&medium, shape, Tolerance::RENDER);
+        for below in [1e-3, 0.1, 1.0, 10.0, 60.0, 300.0, 1000.0, 1900.0] {
+            let p: f64 = 2000.0 - below;
+            for h in [p + 0.3 * below, 2000.0 - 1e-3, 2000.0, 2001.0, 2100.0, 3000.0, 2e4, 9e4] {
+                for sign in [-1.0, 1.0] {
+                    let sine = (radius_m + p) / (radius_m + h);
+                    let cosine = sign * ((h - p) * (2.0 * radius_m + h + p)).sqrt() / (radius_m + h);
+                    let direction = DVec3::new(sine, 0.0, cosine);
+                    let chord = columns.chord(Place::above(h), direction).expect("meets the air");
+                    let exact = medium.optical_depth(shape, Place::above(h), direction);
+                    for (table, exact) in chord.total().into_iter().zip(exact) {
+                        assert!(close(table, exact), "{radius_m}, {below} below, at {h} ({sign}): {table} for {exact}");
                     }
                 }
             }
