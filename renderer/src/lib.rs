@@ -14,6 +14,7 @@ pub mod render;
 pub mod sampling;
 pub mod scene;
 pub mod spectrum;
+pub mod study;
 pub mod sweep;
 pub mod transport;
 mod vectors;

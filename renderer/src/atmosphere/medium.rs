@@ -215,7 +215,7 @@ impl<const L: usize> Medium<L> {
     }
 
     /// Ends of the intervals in m: every profile is linear or exponential between two of them.
-    pub(super) fn nodes(&self) -> &[f64] {
+    pub(crate) fn nodes(&self) -> &[f64] {
         &self.nodes
     }
 

@@ -262,6 +262,40 @@ pub(super) enum BenchName {
     Solved,
 }
 
+/// Flags of `airlight study`.
+#[derive(Debug, Args)]
+pub(super) struct StudyArgs {
+    /// What to study
+    #[arg(value_name = "WHAT")]
+    pub what: StudyName,
+    /// CSV to write [default: plots/airlight-WHAT.csv]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Folder with the tables
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
+    /// Threads, 1 to 1024 [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Say nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum StudyName {
+    /// Column tables: transmittance and single scattering against size, beside the maps of others
+    Columns,
+}
+
+impl StudyName {
+    pub(super) fn as_str(self) -> &'static str {
+        match self {
+            Self::Columns => "columns",
+        }
+    }
+}
+
 /// Flags of `airlight sweep`.
 #[derive(Debug, Args)]
 pub(super) struct SweepArgs {

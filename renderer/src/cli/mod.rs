@@ -12,6 +12,7 @@ mod picture;
 mod progress;
 mod radiance;
 mod render;
+mod study;
 mod sweep;
 
 use crate::scene::SceneError;
@@ -30,6 +31,8 @@ enum Command {
     Radiance(args::RadianceArgs),
     /// Measure what a direction and a picture cost on skies that other renderers were timed on
     Bench(args::BenchArgs),
+    /// Compute how errors go with size and cost: CSV, which airlight-tools chart draws
+    Study(args::StudyArgs),
     /// Trace paths through scenes drawn at random, and report any that is not finite, negative or endless
     Sweep(args::SweepArgs),
 }
@@ -70,6 +73,7 @@ pub fn main() -> ExitCode {
         Command::Merge(args) => merge::run(&args),
         Command::Radiance(args) => radiance::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Study(args) => study::run(&args),
         Command::Sweep(args) => sweep::run(&args),
     };
     match outcome.and_then(|outcome| output::finish().map(|()| outcome)) {

@@ -264,7 +264,7 @@ impl<const L: usize> Exact<'_, L> {
         let thickness = top - bottom;
         let mut lines = vec![0.0];
         if let Shape::Sphere { radius_m } = self.shape {
-            lines.extend([0.0, 0.02, 0.3, 1.0, 4.0].map(|cells| (bottom - cells * thickness).max(0.0)));
+            lines.extend([0.0, 0.02, 0.3, 1.0, 4.0].map(|cells| bottom - cells * thickness));
             lines.extend([5e-4, 5e-3, 5e-2, 0.999].map(|share| -share * radius_m));
         }
         // Planes are crossed at any slant.
@@ -291,7 +291,7 @@ impl<const L: usize> Exact<'_, L> {
                     let upper = depths[PARTS as usize][j] / b;
                     let upper_slope = (high[j] - upper) * thickness * self.stretch(p, top) / b;
                     let lower = if a > 0.0 { depths[0][j] / a } else { low[j] };
-                    let (weights, lower_slope) = if a <= 0.0 || (p > 0.0 && bottom - p < thickness) {
+                    let (weights, lower_slope) = if a <= 0.0 || (p > base && bottom - p < thickness) {
                         (from_start, 0.0)
                     } else {
                         (between, (low[j] - lower) * thickness * self.stretch(p, bottom) / a)
