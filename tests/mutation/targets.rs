@@ -135,6 +135,10 @@ pub fn targets() -> Vec<Target> {
     add("inspect csv", Form::Text, true, vec![file("raw-data/bucholtz-1995/king-factor.csv")], |bytes| {
         tools::inspect::describe_csv("input.csv", bytes).map(drop).map_err(|e| e.to_string())
     });
+    let chart = "# Errors\npanel,curve,size / MB,error\na,\"one, two\",1,1e-3\na,x,100,0.5\nb,x,2,3\n";
+    add("chart", Form::Text, true, vec![chart.into()], |bytes| {
+        tools::chart::parse("input.csv", bytes).map(drop).map_err(|e| e.to_string())
+    });
     let spheres = "id,x,m_re,m_im\n1,0.1,1.5,-0.01\n\"a,b\",1e3,1.33,0\n";
     add("mie cases", Form::Text, true, vec![spheres.into()], mie_cases);
     let spheres = "x,m_re,m_im\n0.1,1.5,-0.01\n1e3,1.5,-0.01\n";

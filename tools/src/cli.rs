@@ -49,6 +49,9 @@ enum Command {
     /// Draw what the tables hold: SVG, PNG and CSV of each figure
     #[cfg(feature = "plot")]
     Plot(figures::PlotArgs),
+    /// Draw points of a CSV file, as `airlight study` writes it: SVG and PNG beside it
+    #[cfg(feature = "plot")]
+    Chart(figures::ChartArgs),
     /// Compute how far numbers that should agree do not: CSV, and SVG and PNG of each study
     #[cfg(feature = "study")]
     Study(figures::StudyArgs),
@@ -116,6 +119,8 @@ pub(crate) fn run() -> ExitCode {
         Command::Lint(args) => return lint::run(&args),
         #[cfg(feature = "plot")]
         Command::Plot(args) => figures::draw(&args),
+        #[cfg(feature = "plot")]
+        Command::Chart(args) => figures::chart(&args),
         #[cfg(feature = "study")]
         Command::Study(args) => figures::study(&args),
     };

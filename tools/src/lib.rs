@@ -8,6 +8,7 @@
 
 pub mod aerosol;
 pub mod build;
+pub mod chart;
 pub mod coefficients;
 pub mod column;
 pub mod data;

@@ -9,7 +9,7 @@ use tables::views::{AerosolSource, Biome};
 use tools::data::Data;
 use tools::study;
 #[cfg(feature = "plot")]
-use tools::{column::Place, plot, study::thesis::Thesis};
+use tools::{chart, column::Place, plot, study::thesis::Thesis};
 
 /// What to draw, from which tables, to where.
 #[cfg(feature = "plot")]
@@ -130,6 +130,38 @@ pub(super) fn draw(args: &PlotArgs) -> Result<(), String> {
             if !args.quiet {
                 let paths = paths.map(|path| path.display().to_string());
                 say(&paths.join("  "));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What to draw.
+#[cfg(feature = "plot")]
+#[derive(Args)]
+pub(super) struct ChartArgs {
+    /// CSV files: a line `# title`, the header panel,curve,X,Y with the names of the axes, and a row for each point
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// Say nothing but errors
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Draws charts of points beside their files.
+#[cfg(feature = "plot")]
+pub(super) fn chart(args: &ChartArgs) -> Result<(), String> {
+    for file in &args.files {
+        let name = file.display().to_string();
+        let bytes = std::fs::read(file).map_err(|e| format!("{name}: cannot be read: {e}"))?;
+        let figure = plot::chart::figure(&chart::parse(&name, &bytes).map_err(|e| e.to_string())?);
+        let drawn = [("svg", plot::svg(&figure)), ("png", plot::png(&figure))];
+        for (ending, bytes) in drawn {
+            let path = file.with_extension(ending);
+            tables::file::replace(&path, &bytes.map_err(|e| e.to_string())?)
+                .map_err(|e| format!("{}: cannot be written: {e}", path.display()))?;
+            if !args.quiet {
+                say(&path.display().to_string());
             }
         }
     }

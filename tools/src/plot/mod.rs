@@ -6,6 +6,7 @@
 mod aerosol;
 mod air;
 mod canvas;
+pub mod chart;
 mod coefficients;
 pub mod colours;
 mod depth;
