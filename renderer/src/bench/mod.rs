@@ -13,7 +13,7 @@ use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::phase::Phase;
 use crate::sampling::{POINTS, Sampler};
-use crate::transport::{self, Estimator, Problem};
+use crate::transport::{self, Certificate, Estimator, Fan, Problem, Resolution, SolveError, Solved};
 use glam::DVec3;
 use std::time::Instant;
 use tables::units::KM;
@@ -122,6 +122,8 @@ pub struct Cost {
     pub deviation: f64,
     /// Seconds a path, the least of several batches.
     pub seconds_per_path: f64,
+    /// Seconds of the direction before its first path.
+    pub seconds_before: f64,
     /// Paths of one low-discrepancy sequence for a relative standard error of 1 %.
     pub paths_to_1_percent: f64,
 }
@@ -130,7 +132,7 @@ impl Cost {
     /// Seconds for a relative standard error of 1 %.
     #[must_use]
     pub fn seconds_to_1_percent(&self) -> f64 {
-        self.seconds_per_path * self.paths_to_1_percent
+        self.seconds_before + self.seconds_per_path * self.paths_to_1_percent
     }
 }
 
@@ -167,6 +169,7 @@ pub fn measure(
         radiance: (0.0, f64::INFINITY),
         deviation: 0.0,
         seconds_per_path: f64::INFINITY,
+        seconds_before: 0.0,
         paths_to_1_percent: f64::NAN,
     };
     let mut last: Option<(f64, f64)> = None;
@@ -215,6 +218,48 @@ pub fn measure(
         points *= 2;
     }
     cost
+}
+
+/// The solved table of a case.
+///
+/// # Errors
+/// [`SolveError`] never: the planet is round.
+pub fn solve(medium: &Medium<1>) -> Result<Solved<1>, SolveError> {
+    Solved::new(medium, Shape::Sphere { radius_m: RADIUS_M }, [ALBEDO], &Resolution::RENDER)
+}
+
+/// The certificate of a table for a case's observer and sun.
+#[must_use]
+pub fn certificate<'a>(case: &Case, solved: &'a Solved<1>, columns: &'a Columns<1>) -> Certificate<'a, 1> {
+    Certificate::new(solved, columns, Place::above(EYE_M), towards(case.sun_zenith_deg, 0.0))
+}
+
+/// Measures one direction by a certificate: fans, at least 64, until `seconds` have passed. A path is a fan here.
+#[must_use]
+pub fn measure_certified(certificate: &Certificate<'_, 1>, fan: Fan, view: (f64, f64), seconds: f64) -> Cost {
+    let direction = towards(view.0, view.1);
+    let time = |fans: u32| {
+        let start = Instant::now();
+        let found = certificate.radiance(direction, fan, fans, 0, 0);
+        (start.elapsed().as_secs_f64(), found)
+    };
+    let least = |fans: u32, times: u32| (0..times).map(|_| time(fans).0).fold(f64::INFINITY, f64::min);
+    // What one more fan takes, and what comes before the first.
+    let (few, many) = (least(2, 16), least(34, 4));
+    let each = (many - few) / 32.0;
+    let before = (few - 2.0 * each).max(0.0);
+    let fans = ((seconds / each) as u32).clamp(64, 1 << 16);
+    let (_, found) = time(fans);
+    let (mean, error) = (found.mean[0], found.variance[0].sqrt());
+    let deviation = error * f64::from(fans).sqrt() / mean;
+    Cost {
+        view,
+        radiance: (mean, error),
+        deviation,
+        seconds_per_path: each,
+        seconds_before: before,
+        paths_to_1_percent: (deviation / 0.01).powi(2).max(1.0),
+    }
 }
 
 /// The direction of a zenith angle and an azimuth from the sun, in degrees.

@@ -237,9 +237,9 @@ pub(super) struct BenchArgs {
     /// What to measure
     #[arg(value_name = "WHAT")]
     pub what: BenchName,
-    /// Estimator of the anchors
-    #[arg(long, value_name = "METHOD", default_value = "paths")]
-    pub method: EstimatorName,
+    /// Estimator of the anchors [default: paths and certified]
+    #[arg(long, value_name = "METHOD")]
+    pub method: Option<BenchMethod>,
     /// Paths in each direction beside solved tables
     #[arg(long, value_name = "N", default_value_t = 8192)]
     pub paths: u64,
@@ -252,6 +252,16 @@ pub(super) struct BenchArgs {
     /// Least time for each direction in seconds
     #[arg(long, value_name = "S", default_value_t = 1.0)]
     pub seconds: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum BenchMethod {
+    /// Paths on column tables
+    Paths,
+    /// The brute-force judge
+    Judge,
+    /// Certificates: fans of rays that end in a solved table, unbiased
+    Certified,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

@@ -1,11 +1,13 @@
 //! `airlight bench`.
 
-use super::args::{BenchArgs, BenchName};
+use super::args::{BenchArgs, BenchMethod, BenchName};
 use super::output::println;
 use super::{Failure, Outcome};
+use crate::atmosphere::{Columns, Medium};
 use crate::bench;
 use crate::data::Data;
 use crate::scene::SceneError;
+use crate::transport::{Estimator, Fan};
 use std::time::Instant;
 use tables::views::Biome;
 
@@ -63,36 +65,70 @@ fn solved(args: &BenchArgs) -> Result<Outcome, Failure> {
 
 fn anchors(args: &BenchArgs) -> Result<Outcome, Failure> {
     println!("one thread, one wavelength; a picture is {} independent pixels of the sky at 1 % rms", bench::PIXELS);
+    let pool = super::pool(Some(1))?;
+    let methods = args.method.map_or(vec![BenchMethod::Paths, BenchMethod::Certified], |method| vec![method]);
     for case in bench::cases() {
         let medium = case.medium().map_err(Failure::error)?;
         let start = Instant::now();
-        let columns = bench::columns(&medium);
+        let columns = pool.install(|| bench::columns(&medium));
         println!(
-            "{} sun zenith {} degrees; tables in {:.3} s, {:.1} MB",
+            "{} sun zenith {} degrees; columns in {:.3} s, {:.1} MB",
             case.name,
             case.sun_zenith_deg,
             start.elapsed().as_secs_f64(),
             columns.bytes() as f64 / 1e6
         );
-        let (mut total, mut count) = (0.0, 0.0);
-        for &view in case.views {
-            let cost = bench::measure(&case, (&medium, &columns), args.method.into(), view, args.seconds);
-            let (radiance, error) = cost.radiance;
-            println!(
-                "  view zenith {:>2}, azimuth {:>3}  radiance {radiance:.5e} +- {:.3} %  sd of a path {:6.3}  {:6.3} us \
-                 a path  {:7.0} paths, {:.3e} s to 1 %",
-                view.0,
-                view.1,
-                100.0 * error / radiance,
-                cost.deviation,
-                1e6 * cost.seconds_per_path,
-                cost.paths_to_1_percent,
+        for &method in &methods {
+            let estimator = match method {
+                BenchMethod::Paths => Estimator::Paths,
+                BenchMethod::Judge => Estimator::Judge,
+                BenchMethod::Certified => {
+                    pool.install(|| certified(&case, (&medium, &columns), args.seconds))?;
+                    continue;
+                }
+            };
+            println!("  {}", if estimator == Estimator::Paths { "paths" } else { "judge" });
+            let costs = case.views.iter().map(|&view| {
+                let cost = bench::measure(&case, (&medium, &columns), estimator, view, args.seconds);
+                print_cost(&cost, "path");
                 cost.seconds_to_1_percent()
-            );
-            total += cost.seconds_to_1_percent();
-            count += 1.0;
+            });
+            let total: f64 = costs.sum();
+            println!("    picture {:.3e} core-seconds", bench::PIXELS * total / case.views.len() as f64);
         }
-        println!("  picture {:.3e} core-seconds", bench::PIXELS * total / count);
     }
     Ok(Outcome::Done)
+}
+
+fn print_cost(cost: &bench::Cost, unit: &str) {
+    let (radiance, error) = cost.radiance;
+    println!(
+        "    view zenith {:>2}, azimuth {:>3}  radiance {radiance:.5e} +- {:.3} %  sd of a {unit} {:6.3}  {:7.3} us each, {:7.0} \
+         for 1 %: {:.3e} s",
+        cost.view.0,
+        cost.view.1,
+        100.0 * error / radiance,
+        cost.deviation,
+        1e6 * cost.seconds_per_path,
+        cost.paths_to_1_percent,
+        cost.seconds_to_1_percent()
+    );
+}
+
+fn certified(case: &bench::Case, (medium, columns): (&Medium<1>, &Columns<1>), seconds: f64) -> Result<(), Failure> {
+    let start = Instant::now();
+    let solved = bench::solve(medium).map_err(Failure::error)?;
+    let table = start.elapsed().as_secs_f64();
+    let certificate = bench::certificate(case, &solved, columns);
+    let before = start.elapsed().as_secs_f64();
+    println!("  certified; table in {table:.3} s, guide in {:.3} s", before - table);
+    let costs = case.views.iter().map(|&view| {
+        let cost = bench::measure_certified(&certificate, Fan::USUAL, view, seconds);
+        print_cost(&cost, "fan");
+        cost.seconds_to_1_percent()
+    });
+    let total: f64 = costs.sum();
+    let picture = bench::PIXELS * total / case.views.len() as f64;
+    println!("    picture {:.3e} core-seconds, table and guide included", before + picture);
+    Ok(())
 }

@@ -14,8 +14,10 @@
 //! What is seen is integrated along the line of sight: sunlight scattered once with the phase functions themselves, and the
 //! table's sources. Radiance is never interpolated.
 
+mod certify;
 mod first;
 mod grid;
+mod guide;
 mod harmonics;
 mod line;
 mod mix;
@@ -26,6 +28,7 @@ mod species;
 mod tests;
 mod view;
 
+pub use certify::{Certificate, Certified, Fan};
 pub use grid::Resolution;
 
 use crate::atmosphere::{Columns, Medium, MediumError, Tolerance};

@@ -4,7 +4,7 @@ use super::Solved;
 use super::grid::Between;
 use super::harmonics::MOST_DEGREE;
 use super::line::{Crossing, MOST_SPECIES, Rule, Spread, Stencil, Take, crossings, quadrature};
-use crate::atmosphere::Chord;
+use crate::atmosphere::{Chord, Columns};
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::vectors::{exp_minus, vectorised};
@@ -18,7 +18,19 @@ impl<const L: usize> Solved<L> {
     /// scattered or reflected once.
     #[must_use]
     pub fn radiance(&self, from: Place, direction: DVec3, sun: DVec3, single: bool) -> [f64; L] {
-        vectorised(Look { solved: self, from, direction, sun, single })
+        vectorised(Look { solved: self, from, direction, sun, single, sunlight: &self.optics.columns })
+    }
+
+    /// Radiance of sunlight scattered or reflected once that arrives where it is with the extinction of these columns; from there on it
+    /// is that of the table's air.
+    pub(super) fn radiance_of_sunlight(
+        &self,
+        from: Place,
+        direction: DVec3,
+        sun: DVec3,
+        sunlight: &Columns<L>,
+    ) -> [f64; L] {
+        vectorised(Look { solved: self, from, direction, sun, single: true, sunlight })
     }
 
     /// As [`Solved::radiance`], of all light, with the sun as a disc. Where it is low its upper and lower parts lie differently
@@ -38,11 +50,12 @@ impl<const L: usize> Solved<L> {
     }
 
     #[inline(always)]
-    pub(super) fn look(&self, from: Place, direction: DVec3, sun: DVec3, single: bool) -> [f64; L] {
+    fn look(&self, look: &Look<'_, L>) -> [f64; L] {
+        let Look { from, direction, sun, single, sunlight, .. } = *look;
         let mut sum = [0.0; L];
         let Some(chord) = self.optics.columns.chord(from, direction) else { return sum };
         let (begin, end) = chord.ends();
-        let sight = Sight { solved: self, chord: &chord, from, direction, sun };
+        let sight = Sight { solved: self, chord: &chord, from, direction, sun, sunlight };
         let towards = direction.dot(sun);
         // All crossings of the line, so that the polynomials also reach over the observer.
         // The other side of a line that cuts the planet is beyond it.
@@ -90,7 +103,15 @@ impl<const L: usize> Solved<L> {
             let through = exp_minus(chord.total());
             let mut foot = sight.place(end);
             foot.altitude_m = 0.0;
-            let light = self.ground_irradiance(foot, sun, single);
+            let mut light = if single { [0.0; L] } else { self.diffuse_irradiance(foot, sun) };
+            let cosine = foot.up.dot(sun);
+            if cosine > 0.0
+                && let Some(arrives) = sunlight.transmittance(foot, sun)
+            {
+                for j in 0..L {
+                    light[j] += cosine * arrives[j];
+                }
+            }
             for j in 0..L {
                 sum[j] += through[j] * self.optics.albedo[j] * FRAC_1_PI * light[j];
             }
@@ -98,26 +119,64 @@ impl<const L: usize> Solved<L> {
         sum
     }
 
-    /// Irradiance of the ground at a place of it, by the sun and, but for `single`, by all other light.
-    fn ground_irradiance(&self, foot: Place, sun: DVec3, single: bool) -> [f64; L] {
-        let cosine = foot.up.dot(sun);
+    /// Irradiance of the ground at a place of it by all light but the sun's own.
+    #[inline(always)]
+    pub(super) fn diffuse_irradiance(&self, foot: Place, sun: DVec3) -> [f64; L] {
         let mut light = [0.0; L];
-        if !single {
-            let Between { first: [first], weights } = self.grid.suns.locate(&[cosine as f32]);
-            for (row, weight) in self.field.ground[first as usize..].iter().zip(weights) {
-                for j in 0..L {
-                    light[j] += f64::from(weight[0] * row[j]);
-                }
-            }
-        }
-        if cosine > 0.0
-            && let Some(through) = self.optics.columns.transmittance(foot, sun)
-        {
+        let Between { first: [first], weights } = self.grid.suns.locate(&[foot.up.dot(sun) as f32]);
+        for (row, weight) in self.field.ground[first as usize..].iter().zip(weights) {
             for j in 0..L {
-                light[j] += cosine * through[j];
+                light[j] += f64::from(weight[0] * row[j]);
             }
         }
         light
+    }
+
+    /// Sources of diffuse light where the species have these weights: moments between levels, each with its share, in a direction looked
+    /// in; the cosines of its zenith angle, of the sun's, and of the angle between the two.
+    #[inline(always)]
+    pub(super) fn diffuse(
+        &self,
+        levels: &[(usize, f32)],
+        [zenith, there, towards]: [f64; 3],
+        weights: &[[f64; L]],
+        harmonics: &mut Vec<f64>,
+    ) -> [f32; L] {
+        let mut total = [0.0_f32; L];
+        let Some(reach) = self.optics.reach(weights) else { return total };
+        let Between { first: [first], weights: lagrange } = self.grid.suns.locate(&[there as f32]);
+        let lagrange = lagrange.map(|weight| weight[0]);
+        if lagrange == [0.0; 4] {
+            return total;
+        }
+        let across = ((1.0 - zenith) * (1.0 + zenith) * (1.0 - there) * (1.0 + there)).max(0.0).sqrt();
+        let turn = if across > 1e-9 { ((towards - zenith * there) / across).clamp(-1.0, 1.0) } else { 1.0 };
+        self.optics.moments.at(zenith, harmonics);
+        let mut sources = [[0.0_f32; L]; MOST_DEGREE + 1];
+        self.optics.add_sources(weights, &mut sources[..=reach.degree]);
+        let mut cosines = [1.0; MOST_DEGREE + 1];
+        cosines[1] = turn;
+        for m in 2..=reach.degree {
+            cosines[m] = 2.0 * turn * cosines[m - 1] - cosines[m - 2];
+        }
+        let (suns, moments) = (self.grid.suns.count(), self.optics.moments.count());
+        for &(level, share) in levels {
+            let lagrange = lagrange.map(|weight| share * weight);
+            let from = (level * suns + first as usize) * moments;
+            let rows = &self.field.moments[from..from + 4 * moments];
+            let (below, above) = rows.split_at(2 * moments);
+            let ((a, b), (c, d)) = (below.split_at(moments), above.split_at(moments));
+            let pairs = self.optics.moments.pairs()[..reach.count].iter().zip(harmonics.iter());
+            for ((((&(l, m), harmonic), (a, b)), c), d) in pairs.zip(a.iter().zip(b)).zip(c).zip(d) {
+                let factor = (harmonic * cosines[m]) as f32;
+                let source = &sources[l];
+                for j in 0..L {
+                    let moment = (lagrange[0] * a[j] + lagrange[1] * b[j]) + (lagrange[2] * c[j] + lagrange[3] * d[j]);
+                    total[j] += factor * source[j] * moment;
+                }
+            }
+        }
+        total
     }
 }
 
@@ -127,12 +186,14 @@ const HIGH_SUN: f64 = 0.2;
 const DEEP: f64 = 0.2;
 
 /// A look along a line of sight.
-struct Look<'a, const L: usize> {
-    solved: &'a Solved<L>,
-    from: Place,
-    direction: DVec3,
-    sun: DVec3,
-    single: bool,
+pub(super) struct Look<'a, const L: usize> {
+    pub(super) solved: &'a Solved<L>,
+    pub(super) from: Place,
+    pub(super) direction: DVec3,
+    pub(super) sun: DVec3,
+    pub(super) single: bool,
+    /// Through which sunlight arrives.
+    pub(super) sunlight: &'a Columns<L>,
 }
 
 impl<const L: usize> NullaryFnOnce for Look<'_, L> {
@@ -140,7 +201,7 @@ impl<const L: usize> NullaryFnOnce for Look<'_, L> {
 
     #[inline(always)]
     fn call(self) -> [f64; L] {
-        self.solved.look(self.from, self.direction, self.sun, self.single)
+        self.solved.look(&self)
     }
 }
 
@@ -158,7 +219,7 @@ impl<const L: usize> Take<L> for Taker<'_, L> {
         if let Some(spread) = &mut self.spread {
             spread.take(s, scattered);
         }
-        let Some(through) = self.sight.solved.optics.columns.transmittance(self.sight.place(s), self.sight.sun) else {
+        let Some(through) = self.sight.sunlight.transmittance(self.sight.place(s), self.sight.sun) else {
             return;
         };
         for (phase, scattered) in self.phases.iter().zip(scattered) {
@@ -179,6 +240,7 @@ struct Sight<'a, const L: usize> {
     from: Place,
     direction: DVec3,
     sun: DVec3,
+    sunlight: &'a Columns<L>,
 }
 
 impl<const L: usize> Sight<'_, L> {
@@ -240,43 +302,12 @@ impl<const L: usize> Sight<'_, L> {
         harmonics: &mut Vec<f64>,
         sum: &mut [f64; L],
     ) {
-        let solved = self.solved;
-        let Some(reach) = solved.optics.reach(weights) else { return };
-        let r = solved.grid.level_radius(place.level);
-        let start = self.from.up * (solved.grid.radius + self.from.altitude_m);
+        let r = self.solved.grid.level_radius(place.level);
+        let start = self.from.up * (self.solved.grid.radius + self.from.altitude_m);
         let position = start + self.direction * self.chord.travelled(place.s);
         let there = (position.dot(self.sun) / r).clamp(-1.0, 1.0);
         let zenith = (place.s / r).clamp(-1.0, 1.0);
-        let Between { first: [first], weights: lagrange } = solved.grid.suns.locate(&[there as f32]);
-        let lagrange = lagrange.map(|weight| weight[0]);
-        if lagrange == [0.0; 4] {
-            return;
-        }
-        let across = ((1.0 - zenith) * (1.0 + zenith) * (1.0 - there) * (1.0 + there)).max(0.0).sqrt();
-        let turn = if across > 1e-9 { ((towards - zenith * there) / across).clamp(-1.0, 1.0) } else { 1.0 };
-        solved.optics.moments.at(zenith, harmonics);
-        let mut sources = [[0.0_f32; L]; MOST_DEGREE + 1];
-        solved.optics.add_sources(weights, &mut sources[..=reach.degree]);
-        let mut cosines = [1.0; MOST_DEGREE + 1];
-        cosines[1] = turn;
-        for m in 2..=reach.degree {
-            cosines[m] = 2.0 * turn * cosines[m - 1] - cosines[m - 2];
-        }
-        let (suns, moments) = (solved.grid.suns.count(), solved.optics.moments.count());
-        let from = (place.level * suns + first as usize) * moments;
-        let rows = &solved.field.moments[from..from + 4 * moments];
-        let (below, above) = rows.split_at(2 * moments);
-        let ((a, b), (c, d)) = (below.split_at(moments), above.split_at(moments));
-        let pairs = solved.optics.moments.pairs()[..reach.count].iter().zip(harmonics.iter());
-        let mut total = [0.0_f32; L];
-        for ((((&(l, m), harmonic), (a, b)), c), d) in pairs.zip(a.iter().zip(b)).zip(c).zip(d) {
-            let factor = (harmonic * cosines[m]) as f32;
-            let source = &sources[l];
-            for j in 0..L {
-                let moment = (lagrange[0] * a[j] + lagrange[1] * b[j]) + (lagrange[2] * c[j] + lagrange[3] * d[j]);
-                total[j] += factor * source[j] * moment;
-            }
-        }
+        let total = self.solved.diffuse(&[(place.level, 1.0)], [zenith, there, towards], weights, harmonics);
         for j in 0..L {
             sum[j] += f64::from(total[j]);
         }

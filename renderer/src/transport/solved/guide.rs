@@ -1,0 +1,344 @@
+//! Where light comes from at a place: a density of directions and distances, from a solved table.
+
+use super::Solved;
+use super::certify::Sources;
+use crate::atmosphere::Chord;
+use crate::geometry::Place;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+/// Zenith angles: bins above the level, between it and the horizon, below the horizon.
+const ZENITHS: [usize; 3] = [6, 2, 4];
+const ALL_ZENITHS: usize = ZENITHS[0] + ZENITHS[1] + ZENITHS[2];
+
+/// Azimuths from the sun's to the opposite one; both sides are alike.
+const AZIMUTHS: usize = 4;
+
+const DIRECTIONS: usize = ALL_ZENITHS * AZIMUTHS;
+
+/// Distances.
+pub(super) const DISTANCES: usize = 12;
+
+/// The share of all densities that is even.
+pub(super) const EVEN: f64 = 0.15;
+
+/// Between the sun's zenith angles for which there is a density, in radians.
+const SUN_STEP: f64 = 4.0 * PI / 180.0;
+
+/// How far beyond the observer's horizon vertices count, in radians.
+const BEYOND: f64 = 12.0 * PI / 180.0;
+
+/// A density over equal bins of the unit interval.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bins<const N: usize> {
+    /// Probability below each bin.
+    below: [f32; N],
+    /// Density in each.
+    density: [f32; N],
+}
+
+impl<const N: usize> Bins<N> {
+    /// In proportion to masses, with a share that is even.
+    pub(super) fn new(masses: [f64; N]) -> Self {
+        let sum: f64 = masses.iter().sum();
+        let mut bins = Self { below: [0.0; N], density: [1.0; N] };
+        let mut below = 0.0;
+        for i in 0..N {
+            let share = if sum > 0.0 { masses[i] / sum } else { 1.0 / N as f64 };
+            bins.below[i] = below as f32;
+            bins.density[i] = ((1.0 - EVEN) * share * N as f64 + EVEN) as f32;
+            below += f64::from(bins.density[i]) / N as f64;
+        }
+        bins
+    }
+
+    /// The number whose share of probability below is `u`, and the density there; the bin, too.
+    #[inline(always)]
+    pub(super) fn sample(&self, u: f64) -> (f64, f64, usize) {
+        let bin = self.below.partition_point(|&below| f64::from(below) <= u).clamp(1, N) - 1;
+        let density = f64::from(self.density[bin]);
+        let within = ((u - f64::from(self.below[bin])) * N as f64 / density).clamp(0.0, 1.0 - 1e-9);
+        ((bin as f64 + within) / N as f64, density, bin)
+    }
+
+    #[inline(always)]
+    fn density(&self, bin: usize) -> f64 {
+        f64::from(self.density[bin])
+    }
+}
+
+/// What a place sees: directions, and distances in each.
+#[derive(Debug, Clone)]
+struct Entry {
+    directions: Bins<DIRECTIONS>,
+    distances: Vec<Bins<DISTANCES>>,
+}
+
+/// Densities at the levels of a table for some zenith angles of the sun.
+#[derive(Debug)]
+pub(super) struct Guide {
+    first_sun: f64,
+    suns: usize,
+    /// [sun][level]
+    entries: Vec<Entry>,
+}
+
+/// A direction that was drawn or found.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Direction {
+    bin: usize,
+    /// Its density in sr^-1.
+    pub(super) density: f64,
+}
+
+/// The directions about a place with a sun.
+#[derive(Debug, Clone, Copy)]
+struct Frame {
+    up: DVec3,
+    sunward: DVec3,
+    across: DVec3,
+    /// Cosine of the zenith angle of the horizon.
+    horizon: f64,
+}
+
+impl Frame {
+    #[inline(always)]
+    fn new(place: Place, sun: DVec3, radius: f64) -> Self {
+        let up = place.up;
+        let level = sun - up * up.dot(sun);
+        let sunward = if level.length_squared() > 1e-12 { level.normalize() } else { up.any_orthonormal_vector() };
+        let ratio = radius / (radius + place.altitude_m);
+        Self { up, sunward, across: up.cross(sunward), horizon: -((1.0 - ratio) * (1.0 + ratio)).max(0.0).sqrt() }
+    }
+
+    /// Where a zenith bin's part begins, its span, and the bin's number within: mu = begin + span x^2, x within the part.
+    #[inline(always)]
+    fn part(&self, zenith: usize) -> (f64, f64, usize, usize) {
+        let [above, between, below] = ZENITHS;
+        if zenith < above {
+            (0.0, 1.0, zenith, above)
+        } else if zenith < above + between {
+            (self.horizon, -self.horizon, zenith - above, between)
+        } else {
+            (self.horizon, -(1.0 + self.horizon), zenith - above - between, below)
+        }
+    }
+
+    /// The direction at places within a bin, 0 to 1 each, and d omega by these.
+    #[inline(always)]
+    fn direction(&self, bin: usize, [zenith, azimuth]: [f64; 2]) -> (DVec3, f64) {
+        let (begin, span, number, count) = self.part(bin / AZIMUTHS);
+        let x = (number as f64 + zenith) / count as f64;
+        let mu = (begin + span * x * x).clamp(-1.0, 1.0);
+        // Both sides of the sun.
+        let side = if azimuth < 0.5 { 1.0 } else { -1.0 };
+        let phi = ((bin % AZIMUTHS) as f64 + (2.0 * azimuth).fract()) * PI / AZIMUTHS as f64;
+        let (sin, cos) = phi.sin_cos();
+        let sine = ((1.0 - mu) * (1.0 + mu)).sqrt();
+        let direction = self.up * mu + self.sunward * (sine * cos) + self.across * (sine * sin * side);
+        (direction, 2.0 * x * span.abs() / count as f64 * TAU / AZIMUTHS as f64)
+    }
+
+    /// The bin of a direction, and d omega by the places within.
+    #[inline(always)]
+    fn find(&self, direction: DVec3) -> (usize, f64) {
+        let mu = direction.dot(self.up);
+        let [above, between, below] = ZENITHS;
+        let (x, span, first, count) = if mu >= 0.0 {
+            (mu.sqrt(), 1.0, 0, above)
+        } else if mu >= self.horizon && self.horizon < 0.0 {
+            (((mu - self.horizon) / -self.horizon).sqrt(), -self.horizon, above, between)
+        } else {
+            let span = 1.0 + self.horizon;
+            (((self.horizon - mu) / span).max(0.0).sqrt(), span, above + between, below)
+        };
+        let x = x.min(1.0);
+        let zenith = first + ((x * count as f64) as usize).min(count - 1);
+        let (a, b) = (direction.dot(self.sunward), direction.dot(self.across));
+        let cosine = a / (a * a + b * b).sqrt().max(1e-30);
+        let azimuth = ((cosine.clamp(-1.0, 1.0).acos() * AZIMUTHS as f64 / PI) as usize).min(AZIMUTHS - 1);
+        (zenith * AZIMUTHS + azimuth, 2.0 * x * span / count as f64 * TAU / AZIMUTHS as f64)
+    }
+}
+
+/// What a [`Guide`] says at one place.
+pub(super) struct Local<'a> {
+    entry: &'a Entry,
+    frame: Frame,
+}
+
+impl Guide {
+    /// For an observer who sees the sun there: the light of all wavelengths counts by its share of `norm`.
+    pub(super) fn new<const L: usize>(sources: &Sources<'_, L>, from: Place, sun: DVec3, norm: &[f64; L]) -> Self {
+        let solved = sources.solved;
+        let radius = solved.grid.radius;
+        let here = from.up.dot(sun).clamp(-1.0, 1.0).acos();
+        let reach = BEYOND + (radius / (radius + from.altitude_m)).acos();
+        let first_sun = (here - reach).max(0.0);
+        let suns = (((here + reach).min(PI) - first_sun) / SUN_STEP).ceil() as usize + 1;
+        let levels = &solved.grid.levels;
+        let entries = (0..suns * levels.len())
+            .into_par_iter()
+            .map(|i| {
+                let (sin, cos) = (first_sun + SUN_STEP * (i / levels.len()) as f64).sin_cos();
+                // Not quite the top, from which nothing is seen upwards.
+                let altitude = levels[i % levels.len()].min(0.999 * levels[levels.len() - 1]);
+                entry(sources, Place::above(altitude), DVec3::new(sin, 0.0, cos), norm)
+            })
+            .collect();
+        Self { first_sun, suns, entries }
+    }
+
+    /// At a place, with the sun there.
+    #[inline(always)]
+    pub(super) fn at<const L: usize>(&self, solved: &Solved<L>, place: Place, sun: DVec3) -> Local<'_> {
+        let chi = place.up.dot(sun).clamp(-1.0, 1.0).acos();
+        let at = ((chi - self.first_sun) / SUN_STEP).round().clamp(0.0, (self.suns - 1) as f64) as usize;
+        let levels = &solved.grid.levels;
+        let above = levels.partition_point(|&level| level < place.altitude_m).clamp(1, levels.len() - 1);
+        let nearer = place.altitude_m - levels[above - 1] < levels[above] - place.altitude_m;
+        let level = if nearer { above - 1 } else { above };
+        Local { entry: &self.entries[at * levels.len() + level], frame: Frame::new(place, sun, solved.grid.radius) }
+    }
+}
+
+fn entry<const L: usize>(sources: &Sources<'_, L>, place: Place, sun: DVec3, norm: &[f64; L]) -> Entry {
+    let frame = Frame::new(place, sun, sources.solved.grid.radius);
+    let mut harmonics = Vec::new();
+    let mut masses = [0.0; DIRECTIONS];
+    let counts = |light: &[f64; L]| -> f64 { (0..L).map(|j| light[j] / norm[j]).sum::<f64>().max(0.0) };
+    let distances = (0..DIRECTIONS).map(|bin| {
+        // The middle of the bin by its measure.
+        let (direction, width) = frame.direction(bin, [0.5, 0.25]);
+        let mut along = [0.0; DISTANCES];
+        let Some(chord) = sources.columns.chord(place, direction) else { return Bins::new(along) };
+        let way = Way::new(&chord, sources.solved.grid.radius);
+        for (i, mass) in along.iter_mut().enumerate() {
+            let (s, stretch) = way.at(&chord, (i as f64 + 0.5) / DISTANCES as f64);
+            let through = chord.point(s).depth.map(|depth| (-depth).exp());
+            let source = sources.air(sources.place(&chord, place, direction, s), direction, sun, &mut harmonics);
+            let light = std::array::from_fn(|j| through[j] * source.total[j] * stretch);
+            *mass = counts(&light);
+        }
+        let mut mass = along.iter().sum::<f64>() / DISTANCES as f64;
+        if chord.ends_on_ground() {
+            let foot = sources.place(&chord, place, direction, chord.ends().1);
+            let source = sources.ground(foot, sun);
+            let total = chord.total();
+            mass += counts(&std::array::from_fn(|j| (-total[j]).exp() * source.total[j]));
+        }
+        masses[bin] = mass * width;
+        Bins::new(along)
+    });
+    let distances = distances.collect();
+    Entry { directions: Bins::new(masses), distances }
+}
+
+impl Local<'_> {
+    /// Draws a direction.
+    #[inline(always)]
+    pub(super) fn sample(&self, [u, v]: [f64; 2]) -> (DVec3, Direction) {
+        let (x, density, bin) = self.entry.directions.sample(u);
+        let within = (x * DIRECTIONS as f64).fract();
+        let (direction, width) = self.frame.direction(bin, [within, v]);
+        (direction, Direction { bin, density: density / DIRECTIONS as f64 / width.max(1e-30) })
+    }
+
+    /// What the density of a direction is.
+    #[inline(always)]
+    pub(super) fn find(&self, direction: DVec3) -> Direction {
+        let (bin, width) = self.frame.find(direction);
+        Direction { bin, density: self.entry.directions.density(bin) / DIRECTIONS as f64 / width.max(1e-30) }
+    }
+
+    /// Distances in a direction.
+    #[inline(always)]
+    pub(super) fn distances(&self, direction: Direction) -> &Bins<DISTANCES> {
+        &self.entry.distances[direction.bin]
+    }
+}
+
+/// A chord by a number v from 0 to 1 that is even in the root of the height above its lowest point, before that negative:
+/// close steps where the air is dense.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Way {
+    lowest: f64,
+    first: f64,
+    last: f64,
+    radius: f64,
+}
+
+impl Way {
+    #[inline(always)]
+    pub(super) fn new<const L: usize>(chord: &Chord<'_, L>, radius: f64) -> Self {
+        let (from, to) = chord.ends();
+        let lowest = chord.altitude(0.0_f64.clamp(from, to));
+        let root = |s: f64| (chord.altitude(s) - lowest).max(0.0).sqrt();
+        let first = if from < 0.0 { -root(from) } else { 0.0 };
+        let last = if to > 0.0 { root(to) } else { 0.0 };
+        Self { lowest, first, last, radius }
+    }
+
+    /// The place on the chord, and ds/dv.
+    #[inline(always)]
+    pub(super) fn at<const L: usize>(&self, chord: &Chord<'_, L>, v: f64) -> (f64, f64) {
+        let q = self.first + v * (self.last - self.first);
+        let altitude = self.lowest + q * q;
+        let distance = chord.distance(altitude);
+        let (from, to) = chord.ends();
+        let falls = q < 0.0 || to <= 0.0;
+        let s = (if falls { -distance } else { distance }).clamp(from, to);
+        // ds/dq = 2 q (R + h) / s, at the perigee sqrt(2 (R + p)).
+        let r = self.radius + altitude;
+        let slope = if distance > 1e-3 { 2.0 * q.abs() * r / distance } else { (2.0 * r).sqrt() };
+        (s, slope * (self.last - self.first))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_are_found_in_the_bins_that_they_come_from() {
+        let place = Place { altitude_m: 3000.0, up: DVec3::new(0.1, 0.2, 0.97).normalize() };
+        let frame = Frame::new(place, DVec3::new(0.9, 0.1, 0.3).normalize(), 6.371e6);
+        for bin in 0..DIRECTIONS {
+            for within in [[0.01, 0.3], [0.5, 0.77], [0.99, 0.1]] {
+                let (direction, width) = frame.direction(bin, within);
+                let (found, again) = frame.find(direction);
+                assert_eq!(found, bin);
+                // Below the horizon mu is a difference of numbers near each other.
+                assert!((again / width - 1.0).abs() < 1e-6, "{bin} {within:?}: {again} for {width}");
+            }
+        }
+    }
+
+    #[test]
+    fn widths_of_directions_fill_the_sphere() {
+        let frame = Frame::new(Place::above(2e4), DVec3::X, 6.371e6);
+        const STEPS: u32 = 20;
+        let middle = |i: u32| (f64::from(i) + 0.5) / f64::from(STEPS);
+        let all: f64 = (0..DIRECTIONS)
+            .flat_map(|bin| (0..STEPS).map(move |i| frame.direction(bin, [middle(i), 0.2]).1 / f64::from(STEPS)))
+            .sum();
+        // The midpoint rule is exact for lines.
+        assert!((all - 2.0 * TAU).abs() < 1e-9, "{all}");
+    }
+
+    #[test]
+    fn bins_are_sampled_by_their_density() {
+        let bins = Bins::new([1.0, 0.0, 3.0, 2.0]);
+        let mut sum = 0.0;
+        for i in 0..1000 {
+            let (x, density, bin) = bins.sample((f64::from(i) + 0.5) / 1000.0);
+            assert_eq!((x * 4.0) as usize, bin);
+            assert!((density - f64::from(bins.density[bin])).abs() < 1e-12);
+            // int x^2 dx
+            sum += x * x / density / 1000.0;
+        }
+        // Steps of a thousandth.
+        assert!((sum - 1.0 / 3.0).abs() < 1e-3, "{sum}");
+    }
+}
