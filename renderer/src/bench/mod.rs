@@ -230,8 +230,8 @@ pub fn solve(medium: &Medium<1>) -> Result<Solved<1>, SolveError> {
 
 /// The certificate of a table for a case's observer and sun.
 #[must_use]
-pub fn certificate<'a>(case: &Case, solved: &'a Solved<1>, columns: &'a Columns<1>) -> Certificate<'a, 1> {
-    Certificate::new(solved, columns, Place::above(EYE_M), towards(case.sun_zenith_deg, 0.0))
+pub fn certificate<'a>(case: &Case, solved: &'a Solved<1>, columns: &Columns<1>) -> Certificate<'a, 1> {
+    Certificate::new(solved, columns.clone(), Place::above(EYE_M), towards(case.sun_zenith_deg, 0.0))
 }
 
 /// Measures one direction by a certificate: fans, at least 64, until `seconds` have passed. A path is a fan here.

@@ -60,6 +60,10 @@ pub(super) struct RenderArgs {
     /// Threads, 1 to 1024; the picture does not depend on it [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Sampling")]
     pub threads: Option<u16>,
+    /// Look at 128 directions of the picture by unbiased estimates that end in the solved table, until it is clear with 95 %
+    /// confidence whether the table's rms error is below E, 1e-5 to 1 [default without E: 0.1%]
+    #[arg(long, value_name = "E", value_parser = share, num_args = 0..=1, default_missing_value = "0.1%", require_equals = true, help_heading = "Sampling")]
+    pub certify: Option<f64>,
     /// Wavelengths: how many from 380 to 780 nm, 1 to 1000, or a list in nm, 300 to 1000,
     /// increasing (450,550,650; a single one as 550.0) [default: 16]
     #[arg(long, value_name = "N|LIST", help_heading = "Sampling")]

@@ -5,7 +5,7 @@ use super::args::PictureArgs;
 use super::output::println;
 use super::progress::{amount, duration, percent, size};
 use crate::film::{DiscLayer, Estimate, Picture, exr, png, tone};
-use crate::render::{Head, Part, Rendering, Shard, Sky, State, Summary, receipt};
+use crate::render::{Head, Part, Rendering, Shard, Sky, State, Summary, Verdict, receipt};
 use crate::scene::Scene;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -57,6 +57,8 @@ pub(super) struct Product<'a> {
     pub(super) disc: DiscLayer,
     pub(super) rendering: Rendering,
     pub(super) head: Head,
+    /// What a certificate says of the tables.
+    pub(super) verdict: Option<Verdict>,
 }
 
 impl Product<'_> {
@@ -68,10 +70,10 @@ impl Product<'_> {
         begin: Instant,
         pool: &rayon::ThreadPool,
     ) -> Result<(), Failure> {
-        let Self { scene, sky, summary, disc, rendering, head } = self;
+        let Self { scene, sky, summary, disc, rendering, head, verdict } = self;
         let picture = Picture { film: &rendering.film, disc, colour: sky.colour() };
         let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(&picture));
-        let attributes = receipt::receipt(scene, sky, &head.parts, rendering, summary, exposure_ev);
+        let attributes = receipt::receipt(scene, sky, &head.parts, rendering, summary, exposure_ev, verdict.as_ref());
         let spectral = args.spectral.then_some(scene.wavelengths_nm.nm());
         let exr = exr::encode(&picture, spectral, &attributes).map_err(Failure::error)?;
         let png = png::encode(&picture, exposure_ev).map_err(Failure::error)?;
@@ -83,6 +85,9 @@ impl Product<'_> {
         write(&files.png, &png)?;
         if !args.quiet {
             describe(scene, sky, summary, rendering, &head.parts);
+            if let Some(verdict) = verdict {
+                describe_verdict(verdict);
+            }
             println!(
                 "time        {} on {} threads",
                 duration(begin.elapsed().as_secs_f64()),
@@ -215,5 +220,25 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, 
         percent(errors.relative),
         percent(errors.median_luminance),
         percent(errors.median_spectral)
+    );
+}
+
+/// What a certificate found.
+fn describe_verdict(verdict: &Verdict) {
+    let Verdict { asked, rms, most, mean, worst, size: (directions, fans) } = *verdict;
+    let signed = |share: f64| format!("{}{}", if share < 0.0 { "-" } else { "+" }, percent(share.abs()));
+    let (beyond, asked) = (if verdict.holds() { "below" } else { "not shown to be below" }, percent(asked));
+    println!(
+        "certified   off by {} (rms), at most {} with 95 % confidence: {beyond} the asked {asked}",
+        percent(rms),
+        percent(most)
+    );
+    println!(
+        "            mean {} +- {}, worst direction {} +- {}; {directions} directions, {} fans of rays",
+        signed(mean.0),
+        percent(mean.1),
+        signed(worst.0),
+        percent(worst.1),
+        amount(fans as f64)
     );
 }

@@ -9,8 +9,8 @@ use crate::data::Data;
 use crate::film::Film;
 use crate::film::exr;
 use crate::render::{
-    Control, End, Extent, Head, Part, Progress, RenderError, Sky, State, Summary, disc_layer, empty, go_on, receipt,
-    replay,
+    Control, End, Extent, Head, Part, Progress, RenderError, Sky, State, Summary, certify, disc_layer, empty, go_on,
+    receipt, replay,
 };
 use crate::scene::{Scene, SceneError};
 use std::path::Path;
@@ -43,6 +43,9 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     let data = Data::load(&args.files.data).map_err(Failure::error)?;
     let pool = super::pool(args.threads)?;
     let sky = pool.install(|| sky(&scene, &data))?;
+    if args.certify.is_some() && !sky.is_solved() {
+        return Err(Failure::usage("--certify looks at solved tables: leave --method out"));
+    }
     if let Some((x, y)) = args.pixel {
         return print_sample(&scene, &sky, (x, y), args.sample);
     }
@@ -71,10 +74,17 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
         let control = Control { stop: &stop, observe: &observe };
         let rendering = go_on(film, &scene, &sky, extent, control, &mut keep);
         line.clear();
-        rendering.map(|rendering| (summary, disc, rendering))
+        let verdict = args.certify.and_then(|asked| {
+            let line = Line::new(args.files.quiet);
+            let observe = |most: f64| line.show(0.0, |_| format!("certificate: off by at most {}", percent(most)));
+            let verdict = certify(&scene, &sky, asked, &stop, &observe);
+            line.clear();
+            verdict
+        });
+        rendering.map(|rendering| (summary, disc, rendering, verdict))
     };
     let result = pool.install(work);
-    let (summary, disc, rendering) = result.map_err(|error| match error {
+    let (summary, disc, rendering, verdict) = result.map_err(|error| match error {
         RenderError::NotFinite { x, y, sample } => {
             let command = replay_command(std::env::args(), (x, y), sample);
             Failure::error(format!("{error}; replay it with: {command}"))
@@ -84,7 +94,12 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     let end = rendering.end;
     let scene = as_made(scene, rendering.film.most_blocks(), extent, end);
     let head = Head { scene: scene.portable(), ..head };
-    Product { scene: &scene, sky: &sky, summary, disc, rendering, head }.deliver(&files, &args.files, begin, &pool)?;
+    Product { scene: &scene, sky: &sky, summary, disc, rendering, head, verdict }.deliver(
+        &files,
+        &args.files,
+        begin,
+        &pool,
+    )?;
     if end == End::Stopped {
         let hint = files.state().map_or(String::new(), |path| format!("; --resume {} goes on", path.display()));
         eprintln!("airlight: stopped by Ctrl-C; the picture holds the samples that were taken until then{hint}");

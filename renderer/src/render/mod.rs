@@ -4,6 +4,7 @@
 //! sample s as point s mod m of block s / m, and blocks are added in order: so a picture depends neither on the number
 //! of threads nor on where its work was interrupted.
 
+mod certify;
 mod disc;
 #[cfg(test)]
 mod honesty;
@@ -17,6 +18,7 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
+pub use certify::{Verdict, certify};
 pub use disc::disc_layer;
 pub use merge::{MergeError, Merged};
 pub use sample::replay;

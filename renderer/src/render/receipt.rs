@@ -1,6 +1,6 @@
 //! What a picture says about how it was made.
 
-use super::{End, Part, Rendering, Sky, Summary};
+use super::{End, Part, Rendering, Sky, Summary, Verdict};
 use crate::film::exr::Attribute;
 use crate::scene::Scene;
 
@@ -33,7 +33,7 @@ pub fn tables(sky: &Sky) -> String {
 
 /// The attributes of a picture's EXR file, names beginning with `airlight.`: program and version, the scene as JSON
 /// (`airlight render` reads it), the seeds and shards whose samples it has, one a line, samples, errors, ozone, illuminances, exposure of the PNG, and
-/// each table with its checksum. No clock, machine or folder.
+/// each table with its checksum; with a certificate, the rms error of solved tables and what it is below with 95 % confidence. No clock, machine or folder.
 #[must_use]
 pub fn receipt(
     scene: &Scene,
@@ -42,6 +42,7 @@ pub fn receipt(
     rendering: &Rendering,
     summary: &Summary,
     exposure_ev: f64,
+    verdict: Option<&Verdict>,
 ) -> Vec<(String, Attribute)> {
     let film = &rendering.film;
     let text = |value: String| Attribute::Text(value);
@@ -70,6 +71,10 @@ pub fn receipt(
         ("airlight.exposure_ev", Attribute::Number(exposure_ev)),
         (TABLES, text(tables(sky))),
     ];
+    if let Some(verdict) = verdict {
+        attributes.push(("airlight.certified_rms", Attribute::Number(verdict.rms)));
+        attributes.push(("airlight.certified_rms_most", Attribute::Number(verdict.most)));
+    }
     if let Some(haze) = haze {
         attributes.push(("airlight.aerosol_optical_depth_550nm", Attribute::Number(haze.optical_depth())));
         attributes.push(("airlight.visibility_km", Attribute::Number(haze.visibility_km())));

@@ -1,6 +1,7 @@
 //! A scene turned into something that answers: what arrives from a direction?
 
 use super::RenderError;
+use super::certify::{self, Certifies};
 use crate::atmosphere::{Air, AirSettings, Columns, Haze, Medium, OzoneSource, Tolerance};
 use crate::data::{Data, Identity};
 use crate::geometry::{Place, Shape};
@@ -8,7 +9,7 @@ use crate::light::{SunDisc, solar_angular_radius};
 use crate::sampling::Sampler;
 use crate::scene::{Scene, SceneError};
 use crate::spectrum::{Colour, Packet, Wavelengths};
-use crate::transport::{self, Estimator, FINER, Method, Problem, Resolution, SolveError, Solved};
+use crate::transport::{self, Certificate, Estimator, FINER, Method, Problem, Resolution, SolveError, Solved};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::ops::Range;
@@ -114,6 +115,11 @@ impl Sky {
     pub fn table_error(&self) -> Option<f64> {
         let errors = self.carriers.iter().map(|(_, carrier)| carrier.table_error());
         errors.reduce(|a, b| Some(a?.max(b?))).flatten()
+    }
+
+    /// Certificates of the solved tables, packet by packet; `None` if there are none.
+    pub(super) fn certificates(&self) -> Option<Vec<Box<dyn Certifies + '_>>> {
+        self.carriers.iter().map(|(range, carrier)| carrier.certificate(self.place, range.len())).collect()
     }
 
     /// Adds the solar disc seen in `direction` through the air, in sr^-1, times `weight`.
@@ -282,6 +288,8 @@ trait Carrier: Debug + Send + Sync {
     fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool;
     fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]);
     fn table_error(&self) -> Option<f64>;
+    /// A certificate of the solved table for its observer, of so many wavelengths.
+    fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>>;
 }
 
 /// How radiance is found, with the tables for it.
@@ -329,6 +337,13 @@ impl<const L: usize> Carrier for Lanes<L> {
             Means::Solved(_, error) => Some(*error),
             Means::Estimated(..) => None,
         }
+    }
+
+    fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>> {
+        let Means::Solved(solved, _) = &self.means else { return None };
+        let columns = Columns::new(&self.medium, self.shape, Tolerance::RENDER);
+        let certificate = Certificate::new(solved, columns, from, self.sun.direction());
+        Some(Box::new(certify::Packet { solved, certificate, count }))
     }
 
     fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool {

@@ -39,6 +39,20 @@ fn solved_pictures_have_no_noise_and_state_the_tables_error() {
 }
 
 #[test]
+fn solved_pictures_are_certified() {
+    let scene = Scene { method: Method::Solved, spp: None, ..small() };
+    let verdict = certify(&scene, &sky(&scene), 0.01, &NEVER, &|_| {}).expect("solved");
+    assert!(verdict.holds() && verdict.mean.0.abs() < 0.01, "{verdict:?}");
+    assert_eq!(
+        Some(verdict),
+        certify(&scene, &sky(&scene), 0.01, &NEVER, &|_| {}),
+        "random numbers are a function of the seed"
+    );
+    let paths = small();
+    assert_eq!(certify(&paths, &sky(&paths), 0.01, &NEVER, &|_| {}), None);
+}
+
+#[test]
 fn a_sun_too_low_for_a_solved_table_is_refused() {
     let scene = Scene { method: Method::Solved, sun_elevation_deg: -18.0, ..small() };
     let data = Data::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../data")).expect("tables");

@@ -40,7 +40,7 @@ pub struct Fan {
 
 impl Fan {
     /// What is taken.
-    pub const USUAL: Self = Self { first: 64, kept: 1, further: 32 };
+    pub const USUAL: Self = Self { first: 128, kept: 2, further: 64 };
 }
 
 /// A path goes on with this times its importance, at most 1.
@@ -190,7 +190,7 @@ struct Shares {
 #[derive(Debug)]
 pub struct Certificate<'a, const L: usize> {
     solved: &'a Solved<L>,
-    truth: &'a Columns<L>,
+    truth: Columns<L>,
     /// Columns of the table's air, where that is not the true one.
     scaled: Option<Columns<L>>,
     from: Place,
@@ -225,7 +225,7 @@ impl<'a, const L: usize> Certificate<'a, L> {
     /// For an observer at `from` with the sun, a parallel beam, in the unit direction `sun`. `columns` are those of the medium for which
     /// the table was solved, with nothing cut off.
     #[must_use]
-    pub fn new(solved: &'a Solved<L>, columns: &'a Columns<L>, from: Place, sun: DVec3) -> Self {
+    pub fn new(solved: &'a Solved<L>, columns: Columns<L>, from: Place, sun: DVec3) -> Self {
         let whole = solved.optics.species.iter().all(|one| one.whole.iter().all(|&whole| whole == 1.0));
         let shape = Shape::Sphere { radius_m: solved.grid.radius };
         let scaled = (!whole).then(|| Columns::new(&solved.optics.medium, shape, Tolerance::RENDER));
@@ -236,7 +236,13 @@ impl<'a, const L: usize> Certificate<'a, L> {
     }
 
     fn sources(&self) -> Sources<'_, L> {
-        Sources { solved: self.solved, columns: self.scaled.as_ref().unwrap_or(self.truth), truth: self.truth }
+        Sources { solved: self.solved, columns: self.scaled.as_ref().unwrap_or(&self.truth), truth: &self.truth }
+    }
+
+    /// Where the observer is, and the direction to the sun.
+    #[must_use]
+    pub fn observer(&self) -> (Place, DVec3) {
+        (self.from, self.sun)
     }
 
     /// Mean of what the table says is seen.
@@ -295,7 +301,7 @@ impl<'a, const L: usize> Certificate<'a, L> {
             let air = masses.iter().sum::<f64>() / SIGHT as f64;
             ground = (seen / (seen + air).max(1e-300)).clamp(0.05, 0.95);
         }
-        let single = self.solved.radiance_of_sunlight(self.from, direction, self.sun, self.truth);
+        let single = self.solved.radiance_of_sunlight(self.from, direction, self.sun, &self.truth);
         Some(View { chord, direction, way, bins: Bins::new(masses), ground, norm, single, sources })
     }
 }

@@ -1,0 +1,202 @@
+//! How far the solved tables of a picture are from the truth, found by certificates in some of its directions.
+
+use super::sky::Sky;
+use crate::camera::Camera;
+use crate::scene::Scene;
+use crate::transport::{Certificate, Fan, Solved};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::fmt::Debug;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Directions in which a picture is looked at.
+const DIRECTIONS: usize = 128;
+
+/// Fans of a direction and a round, and the most rounds.
+const FANS: u32 = 8;
+const MOST_ROUNDS: u32 = 128;
+
+/// Standard errors within which a number lies with 95 % confidence, on one side.
+const CONFIDENT: f64 = 1.645;
+
+/// What a certificate says about the tables of a picture; errors are relative to radiance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Verdict {
+    /// What was asked: whether the root mean square error is below it.
+    pub asked: f64,
+    /// Root mean square error over directions and wavelengths, without the certificate's own noise.
+    pub rms: f64,
+    /// What it is below with 95 % confidence.
+    pub most: f64,
+    /// Mean error, and the standard error of that.
+    pub mean: (f64, f64),
+    /// Mean over the wavelengths of the error in the direction in which it is largest, and its standard error.
+    pub worst: (f64, f64),
+    /// Directions, and fans in all.
+    pub size: (usize, u64),
+}
+
+impl Verdict {
+    /// Whether the error is below what was asked, with 95 % confidence.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.most <= self.asked
+    }
+}
+
+/// Certificates of a packet of wavelengths.
+pub(super) trait Certifies: Debug + Sync {
+    /// What the table says in a direction at each wavelength.
+    fn table(&self, direction: DVec3) -> Vec<f64>;
+    /// Mean and variance of radiance at each wavelength, by fans.
+    fn certified(&self, direction: DVec3, fans: u32, seed: u64, stream: u64) -> Vec<(f64, f64)>;
+}
+
+/// A certificate of one packet, of which the first `count` lanes count.
+#[derive(Debug)]
+pub(super) struct Packet<'a, const L: usize> {
+    pub(super) solved: &'a Solved<L>,
+    pub(super) certificate: Certificate<'a, L>,
+    pub(super) count: usize,
+}
+
+impl<const L: usize> Certifies for Packet<'_, L> {
+    fn table(&self, direction: DVec3) -> Vec<f64> {
+        let (from, sun) = self.certificate.observer();
+        self.solved.radiance(from, direction, sun, false)[..self.count].to_vec()
+    }
+
+    fn certified(&self, direction: DVec3, fans: u32, seed: u64, stream: u64) -> Vec<(f64, f64)> {
+        let found = self.certificate.radiance(direction, Fan::USUAL, fans, seed, stream);
+        (0..self.count).map(|j| (found.mean[j], found.variance[j])).collect()
+    }
+}
+
+/// A direction with what is known of it.
+struct Looked {
+    direction: DVec3,
+    table: Vec<f64>,
+    /// Sums over rounds of means and of their variances.
+    sums: Vec<(f64, f64)>,
+}
+
+/// Directions of a picture, spread evenly over its pixels (R_2 of Roberts 2018), that see light.
+fn directions(camera: &Camera, (width, height): (u32, u32), packets: &[Box<dyn Certifies + '_>]) -> Vec<Looked> {
+    const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3];
+    // Of the whole sphere a small part may be seen.
+    const TRIES: u32 = 20_000;
+    let places = (0..TRIES).filter_map(|i| {
+        let [x, y] = STEPS.map(|step| (0.5 + step * f64::from(i + 1)).fract());
+        let pixel = |share: f64, size: u32| (share * f64::from(size)).floor() + 0.5;
+        camera.direction(pixel(x, width), pixel(y, height))
+    });
+    let look = |direction| {
+        let table: Vec<f64> = packets.iter().flat_map(|packet| packet.table(direction)).collect();
+        let sums = vec![(0.0, 0.0); table.len()];
+        Looked { direction, table, sums }
+    };
+    places.map(look).filter(|looked| looked.table.iter().all(|&light| light > 0.0)).take(DIRECTIONS).collect()
+}
+
+/// Looks at [`DIRECTIONS`] of a picture of solved tables until it is clear, with 95 % confidence, whether their root mean square error
+/// is below `asked`, or [`MOST_ROUNDS`] have passed, or `stop` is set. The sun is the middle of its disc. `None` if the picture
+/// has no solved tables or sees no light.
+#[must_use]
+pub fn certify(
+    scene: &Scene,
+    sky: &Sky,
+    asked: f64,
+    stop: &AtomicBool,
+    observe: &(dyn Fn(f64) + Sync),
+) -> Option<Verdict> {
+    let packets = sky.certificates()?;
+    let mut all = directions(&scene.camera(), scene.size(), &packets);
+    let mut verdict = None;
+    if all.is_empty() {
+        return None;
+    }
+    for round in 0..MOST_ROUNDS {
+        all.par_iter_mut().enumerate().for_each(|(i, looked)| {
+            let stream = (i as u64) << 32 | u64::from(round);
+            let found = packets
+                .iter()
+                .flat_map(|packet| packet.certified(looked.direction, FANS, scene.seed, stream))
+                .collect::<Vec<_>>();
+            for (sum, one) in looked.sums.iter_mut().zip(found) {
+                sum.0 += one.0;
+                sum.1 += one.1;
+            }
+        });
+        let judged = judge(&all, round + 1, asked);
+        verdict = Some(judged);
+        observe(judged.most);
+        // Few fans know little of their own spread.
+        let (square, margin) = (judged.rms.powi(2), judged.most.powi(2) - judged.rms.powi(2));
+        let beyond = round + 1 >= 16 && square - margin > asked * asked;
+        if (judged.holds() && round + 1 >= 4) || beyond || stop.load(Ordering::Relaxed) {
+            break;
+        }
+    }
+    verdict
+}
+
+/// The verdict after some rounds.
+fn judge(all: &[Looked], rounds: u32, asked: f64) -> Verdict {
+    let n = f64::from(rounds);
+    let mut worst = (0.0_f64, 0.0_f64);
+    // Of each direction, means over wavelengths: error, and squared error without what noise adds.
+    let rows: Vec<(f64, f64)> = all
+        .iter()
+        .map(|looked| {
+            let count = looked.table.len() as f64;
+            let (mut off, mut square, mut deviation) = (0.0, 0.0, 0.0);
+            for (table, (mean, variance)) in looked.table.iter().zip(&looked.sums) {
+                let truth = mean / n;
+                let (relative, noise) = ((table - truth) / table, variance / (n * n) / (table * table));
+                off += relative / count;
+                square += (relative * relative - noise) / count;
+                // Wavelengths share their paths: errors add up.
+                deviation += noise.sqrt() / count;
+            }
+            if off.abs() > worst.0.abs() {
+                worst = (off, deviation);
+            }
+            (off, square)
+        })
+        .collect();
+    let size = rows.len() as f64;
+    let mean_of = |of: &dyn Fn(&(f64, f64)) -> f64| {
+        let mean = rows.iter().map(of).sum::<f64>() / size;
+        let spread = rows.iter().map(|row| (of(row) - mean).powi(2)).sum::<f64>() / (size - 1.0).max(1.0);
+        (mean, (spread / size).sqrt())
+    };
+    let (square, error) = mean_of(&|row| row.1);
+    let square = square.max(0.0);
+    Verdict {
+        asked,
+        rms: square.sqrt(),
+        most: (square + CONFIDENT * error).sqrt(),
+        mean: mean_of(&|row| row.0),
+        worst,
+        size: (rows.len(), rows.len() as u64 * u64::from(rounds * FANS)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verdicts_take_the_noise_out() {
+        // Tables 1 % too bright, with a noise of 3 % in each of many directions.
+        let looked = |i: usize| {
+            let noise = 0.03 * if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+            let truth = 1.0 - 0.01 + noise;
+            Looked { direction: DVec3::Z, table: vec![1.0], sums: vec![(4.0 * truth, 16.0 * 0.03 * 0.03)] }
+        };
+        let all: Vec<_> = (0..100).map(looked).collect();
+        let verdict = judge(&all, 4, 0.1);
+        assert!((verdict.rms - 0.01).abs() < 1e-9 && (verdict.mean.0 - 0.01).abs() < 1e-12, "{verdict:?}");
+        assert!(verdict.holds() && verdict.most > 0.012, "{verdict:?}");
+    }
+}
