@@ -300,12 +300,18 @@ pub(super) struct StudyArgs {
 pub(super) enum StudyName {
     /// Column tables: transmittance and single scattering against size, beside the maps of others
     Columns,
+    /// Solved tables of clear air and the nine biomes: error over the sun's elevation, by certificates
+    SolvedSuns,
+    /// Solved tables: error against the time to solve, for grids, moments and orders
+    SolvedGrids,
 }
 
 impl StudyName {
     pub(super) fn as_str(self) -> &'static str {
         match self {
             Self::Columns => "columns",
+            Self::SolvedSuns => "solved-suns",
+            Self::SolvedGrids => "solved-grids",
         }
     }
 }

@@ -17,6 +17,8 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
     let chart = pool
         .install(|| match args.what {
             StudyName::Columns => study::columns::make(&data, &progress),
+            StudyName::SolvedSuns => study::solved::suns(&data, &progress),
+            StudyName::SolvedGrids => study::solved::grids(&data, &progress),
         })
         .map_err(Failure::error)?;
     line.clear();

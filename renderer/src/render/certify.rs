@@ -1,7 +1,9 @@
 //! How far the solved tables of a picture are from the truth, found by certificates in some of its directions.
 
 use super::sky::Sky;
+use crate::atmosphere::Columns;
 use crate::camera::Camera;
+use crate::geometry::Place;
 use crate::scene::Scene;
 use crate::transport::{Certificate, Fan, Solved};
 use glam::DVec3;
@@ -90,12 +92,7 @@ fn directions(camera: &Camera, (width, height): (u32, u32), packets: &[Box<dyn C
         let pixel = |share: f64, size: u32| (share * f64::from(size)).floor() + 0.5;
         camera.direction(pixel(x, width), pixel(y, height))
     });
-    let look = |direction| {
-        let table: Vec<f64> = packets.iter().flat_map(|packet| packet.table(direction)).collect();
-        let sums = vec![(0.0, 0.0); table.len()];
-        Looked { direction, table, sums }
-    };
-    places.map(look).filter(|looked| looked.table.iter().all(|&light| light > 0.0)).take(DIRECTIONS).collect()
+    places.filter_map(|direction| look(direction, packets)).take(DIRECTIONS).collect()
 }
 
 /// Looks at [`DIRECTIONS`] of a picture of solved tables until it is clear, with 95 % confidence, whether their root mean square error
@@ -116,17 +113,7 @@ pub fn certify(
         return None;
     }
     for round in 0..MOST_ROUNDS {
-        all.par_iter_mut().enumerate().for_each(|(i, looked)| {
-            let stream = (i as u64) << 32 | u64::from(round);
-            let found = packets
-                .iter()
-                .flat_map(|packet| packet.certified(looked.direction, FANS, scene.seed, stream))
-                .collect::<Vec<_>>();
-            for (sum, one) in looked.sums.iter_mut().zip(found) {
-                sum.0 += one.0;
-                sum.1 += one.1;
-            }
-        });
+        go_round(&mut all, &packets, scene.seed, round);
         let judged = judge(&all, round + 1, asked);
         verdict = Some(judged);
         observe(judged.most);
@@ -138,6 +125,44 @@ pub fn certify(
         }
     }
     verdict
+}
+
+/// One more round of fans in every direction.
+fn go_round(all: &mut [Looked], packets: &[Box<dyn Certifies + '_>], seed: u64, round: u32) {
+    all.par_iter_mut().enumerate().for_each(|(i, looked)| {
+        let stream = (i as u64) << 32 | u64::from(round);
+        let found = packets.iter().flat_map(|packet| packet.certified(looked.direction, FANS, seed, stream));
+        for (sum, one) in looked.sums.iter_mut().zip(found.collect::<Vec<_>>()) {
+            sum.0 += one.0;
+            sum.1 += one.1;
+        }
+    });
+}
+
+/// The verdict of so many rounds on a table for an observer and a sun, in directions that see light; `None` if none does. The
+/// `columns` are those of the air with nothing cut off.
+#[must_use]
+pub fn certify_table<const L: usize>(
+    solved: &Solved<L>,
+    columns: Columns<L>,
+    (from, sun): (Place, DVec3),
+    directions: &[DVec3],
+    rounds: u32,
+) -> Option<Verdict> {
+    let certificate = Certificate::new(solved, columns, from, sun);
+    let packets: [Box<dyn Certifies + '_>; 1] = [Box::new(Packet { solved, certificate, count: L })];
+    let mut all: Vec<Looked> = directions.iter().filter_map(|&direction| look(direction, &packets)).collect();
+    for round in 0..rounds {
+        go_round(&mut all, &packets, 0, round);
+    }
+    (!all.is_empty() && rounds > 0).then(|| judge(&all, rounds, f64::INFINITY))
+}
+
+/// A direction and what the tables say of it; `None` in the dark.
+fn look(direction: DVec3, packets: &[Box<dyn Certifies + '_>]) -> Option<Looked> {
+    let table: Vec<f64> = packets.iter().flat_map(|packet| packet.table(direction)).collect();
+    let sums = vec![(0.0, 0.0); table.len()];
+    table.iter().all(|&light| light > 0.0).then_some(Looked { direction, table, sums })
 }
 
 /// The verdict after some rounds.

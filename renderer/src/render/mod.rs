@@ -18,7 +18,7 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
-pub use certify::{Verdict, certify};
+pub use certify::{Verdict, certify, certify_table};
 pub use disc::disc_layer;
 pub use merge::{MergeError, Merged};
 pub use sample::replay;

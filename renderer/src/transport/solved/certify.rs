@@ -53,7 +53,7 @@ const SIGHT: usize = 24;
 const DEFENSIVE: f64 = 0.02;
 
 /// The most vertices of a path; light of such orders is nothing.
-const MOST: u32 = 200;
+const MOST: u64 = 200;
 
 /// Light that a place sends into a direction, per length or from the ground.
 #[derive(Debug, Clone, Copy)]
@@ -175,6 +175,12 @@ struct Reached<const L: usize> {
     direction: Option<DVec3>,
     weight: [f64; L],
     source: Source<L>,
+}
+
+impl<const L: usize> Reached<L> {
+    fn times(&self, factor: f64) -> Self {
+        Self { weight: self.weight.map(|weight| weight * factor), ..*self }
+    }
 }
 
 /// Shares of the ways in which directions are drawn at a vertex: straight on, by the phase functions about the direction looked
@@ -326,31 +332,72 @@ impl<const L: usize> NullaryFnOnce for Estimate<'_, L> {
 }
 
 impl<const L: usize> Estimate<'_, L> {
+    /// The fan of the line of sight, and those of the points that are kept: all by the same loop, so that its code is there once.
     #[inline(always)]
     fn fan(&self) -> [f64; L] {
         let fan = self.fan;
         let (mut sum, mut harmonics) = ([0.0; L], Vec::new());
-        let mut reached = Vec::with_capacity(2 * fan.first as usize);
-        let share = 1.0 / f64::from(fan.first);
-        for point in 0..fan.first {
-            let mut sampler = Sampler::sobol(self.seed, self.pixel, u64::from(self.number) << 20, point);
-            sampler.go_to(2);
-            let [along, u, v, distance] = sampler.four();
-            let (vertex, weight) = self.first(along);
-            let weight = weight.map(|weight| weight * share);
-            self.child(&vertex, [u, v, distance], &weight, &mut reached, &mut harmonics);
-        }
-        score(&reached, &mut sum);
+        let mut reached = Vec::with_capacity(2 * fan.first.max(fan.further) as usize);
         let mut random = Sampler::new(self.seed, self.pixel, (1 << 63) | u64::from(self.number));
-        let importance = self.importance(&reached);
-        let offset = random.uniform();
-        let chosen = systematic(&importance, fan.kept, offset);
-        for (path, (index, probability)) in chosen.into_iter().enumerate() {
-            let factor = 1.0 / (f64::from(fan.kept) * probability);
-            let one = Reached { weight: reached[index].weight.map(|weight| weight * factor), ..reached[index] };
-            self.off(one, path as u32, &mut random, &mut sum, &mut harmonics);
+        // A path of each kept point: the point, the path's number and how many fans it has had.
+        let mut paths: Vec<(Reached<L>, u64, u64)> = Vec::new();
+        let mut now: Option<(Reached<L>, u64, u64)> = None;
+        loop {
+            let (points, branch) = match &now {
+                None => (fan.first, 0),
+                Some((_, path, depth)) => (fan.further, (path << 10) | depth),
+            };
+            let share = 1.0 / f64::from(points);
+            let kept = now
+                .as_ref()
+                .map(|(one, ..)| (self.vertex(one.place, one.direction), one.weight.map(|weight| weight * share)));
+            reached.clear();
+            for point in 0..points {
+                let stream = (u64::from(self.number) << 20) | branch;
+                let mut sampler = Sampler::sobol(self.seed, self.pixel, stream, point);
+                sampler.go_to(2);
+                let [along, u, v, distance] = sampler.four();
+                let (vertex, weight) = kept.unwrap_or_else(|| {
+                    let (vertex, weight) = self.first(along);
+                    (vertex, weight.map(|weight| weight * share))
+                });
+                self.child(&vertex, [u, v, distance], &weight, &mut reached, &mut harmonics);
+            }
+            for one in &reached {
+                for j in 0..L {
+                    sum[j] += one.weight[j] * one.source.total[j];
+                }
+            }
+            let importance = self.importance(&reached);
+            match now {
+                None => {
+                    let chosen = systematic(&importance, fan.kept, random.uniform());
+                    let path = |(number, (index, probability)): (u64, (usize, f64))| {
+                        (reached[index].times(1.0 / (f64::from(fan.kept) * probability)), number, 1)
+                    };
+                    paths.extend((0..).zip(chosen).map(path));
+                }
+                // D: less what the table says; it goes on with a probability by what it contributes.
+                Some((one, path, depth)) => {
+                    for j in 0..L {
+                        sum[j] -= one.weight[j] * one.source.tail[j];
+                    }
+                    let whole: f64 = importance.iter().sum();
+                    let chance = (SURVIVAL * f64::from(fan.kept) * whole).min(1.0);
+                    if depth < MOST
+                        && whole > 0.0
+                        && random.uniform() < chance
+                        && let Some(&(index, probability)) = systematic(&importance, 1, random.uniform()).first()
+                    {
+                        paths.push((reached[index].times(1.0 / (probability * chance)), path, depth + 1));
+                    }
+                }
+            }
+            now = paths.pop();
+            if now.is_none() {
+                return sum;
+            }
         }
-        sum
     }
 
     /// A vertex on the line of sight, and its weight.
@@ -376,40 +423,6 @@ impl<const L: usize> Estimate<'_, L> {
         let scattering =
             if direction.is_some() { self.view.sources.scattering(place.altitude_m) } else { [[0.0; L]; MOST_SPECIES] };
         Vertex { place, direction, scattering }
-    }
-
-    /// Adds D at a point to the sum, and follows the path.
-    #[inline(always)]
-    fn off(&self, mut one: Reached<L>, path: u32, random: &mut Sampler, sum: &mut [f64; L], harmonics: &mut Vec<f64>) {
-        let fan = self.fan;
-        let share = 1.0 / f64::from(fan.further);
-        let mut reached = Vec::with_capacity(2 * fan.further as usize);
-        for depth in 0..MOST {
-            reached.clear();
-            let vertex = self.vertex(one.place, one.direction);
-            let weight = one.weight.map(|weight| weight * share);
-            let branch = (u64::from(self.number) << 20) | (u64::from(path) << 10) | u64::from(depth + 1);
-            for point in 0..fan.further {
-                let mut sampler = Sampler::sobol(self.seed, self.pixel, branch, point);
-                sampler.go_to(2);
-                let [u, v, distance, _] = sampler.four();
-                self.child(&vertex, [u, v, distance], &weight, &mut reached, harmonics);
-            }
-            score(&reached, sum);
-            for j in 0..L {
-                sum[j] -= one.weight[j] * one.source.tail[j];
-            }
-            let importance = self.importance(&reached);
-            let whole: f64 = importance.iter().sum();
-            let chance = SURVIVAL * f64::from(fan.kept) * whole;
-            if whole <= 0.0 || (chance < 1.0 && random.uniform() >= chance) {
-                return;
-            }
-            let offset = random.uniform();
-            let Some(&(index, probability)) = systematic(&importance, 1, offset).first() else { return };
-            let factor = 1.0 / (probability * chance.min(1.0));
-            one = Reached { weight: reached[index].weight.map(|weight| weight * factor), ..reached[index] };
-        }
     }
 
     /// What each point contributes, as a share of what is seen.
@@ -571,15 +584,6 @@ impl<const L: usize> Estimate<'_, L> {
         let place = sources.place(&chord, vertex.place, direction, s);
         let source = sources.air(place, direction, sun, harmonics);
         reached.push(Reached { place, direction: Some(direction), weight, source });
-    }
-}
-
-#[inline(always)]
-fn score<const L: usize>(reached: &[Reached<L>], sum: &mut [f64; L]) {
-    for one in reached {
-        for j in 0..L {
-            sum[j] += one.weight[j] * one.source.total[j];
-        }
     }
 }
 

@@ -16,6 +16,8 @@ pub struct Resolution {
     pub parts: usize,
     /// Highest degree of the moments, where there is more than molecules.
     pub degree: usize,
+    /// Relative change of the field by another order of scattering below which it counts as solved.
+    pub change: f64,
 }
 
 /// The places of the table.

@@ -127,20 +127,17 @@ struct Setup<'a, const L: usize> {
 
 impl Resolution {
     /// What the renderer takes.
-    pub const RENDER: Self = Self { levels: 22, suns: 40, zeniths: [7, 4, 5], parts: 8, degree: 14 };
+    pub const RENDER: Self = Self { levels: 22, suns: 40, zeniths: [7, 4, 5], parts: 8, degree: 14, change: 5e-4 };
 
     /// What reference cases take: also the twilight limb seen from space.
-    pub const FINE: Self = Self { levels: 32, suns: 48, zeniths: [10, 6, 8], parts: 8, degree: 16 };
+    pub const FINE: Self = Self { levels: 32, suns: 48, zeniths: [10, 6, 8], parts: 8, degree: 16, change: 5e-4 };
 
     /// A coarser one, whose distance from [`Resolution::RENDER`] tells how far that is from the truth.
-    pub const COARSE: Self = Self { levels: 16, suns: 33, zeniths: [5, 3, 4], parts: 4, degree: 14 };
+    pub const COARSE: Self = Self { levels: 16, suns: 33, zeniths: [5, 3, 4], parts: 4, degree: 14, change: 5e-4 };
 }
 
 /// What a solution is off, of what it differs from one on the next coarser grid: that is off by two to four times as much.
 pub const FINER: f64 = 0.5;
-
-/// Relative change of the field by another order below which it counts as solved.
-const SOLVED: f64 = 5e-4;
 
 /// Why planes are refused.
 const ROUND: &str = "solved tables need a round planet: take --method paths";
@@ -276,7 +273,7 @@ impl<const L: usize> Setup<'_, L> {
             add(&mut next, &first);
             let residual = mixer.change(&field, &next);
             field = mixer.mix(field, next);
-            if residual <= SOLVED || orders >= MOST_ORDERS {
+            if residual <= resolution.change || orders >= MOST_ORDERS {
                 return (field, orders, residual);
             }
         }

@@ -1,0 +1,140 @@
+//! Solved tables: their error over the sun's elevation, found by certificates, and against the cost of their grids.
+
+use super::{Chart, Point};
+use crate::atmosphere::{Columns, Medium, Tolerance};
+use crate::data::Data;
+use crate::geometry::{Place, Shape};
+use crate::render::{RenderError, Sky, certify_table};
+use crate::scene::Scene;
+use crate::transport::{FINER, Method, Resolution, Solved};
+use glam::DVec3;
+use std::time::Instant;
+use tables::units::EARTH_RADIUS_M;
+use tables::views::Biome;
+
+const SHAPE: Shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
+
+/// Wavelengths, evenly from 380 to 780 nm, and the albedo of the ground.
+const WAVELENGTHS: usize = 8;
+const ALBEDO: [f64; WAVELENGTHS] = [0.1; WAVELENGTHS];
+
+/// Altitude of the observer in m.
+const EYE_M: f64 = 2.0;
+
+/// Elevations of the sun in degrees.
+const SUNS: [f64; 9] = [60.0, 30.0, 10.0, 5.0, 2.0, 0.0, -2.0, -5.0, -8.0];
+
+/// Directions of the dome, and rounds of fans in each.
+const DIRECTIONS: u32 = 64;
+const ROUNDS: u32 = 12;
+
+fn medium(data: &Data, biome: Option<Biome>) -> Result<Medium<WAVELENGTHS>, RenderError> {
+    let scene = Scene { biome, method: Method::Paths, ..Scene::default() };
+    let nm = std::array::from_fn(|i| 380.0 + 400.0 * i as f64 / (WAVELENGTHS - 1) as f64);
+    Ok(Sky::new(&scene, data)?.air().medium(&nm)?)
+}
+
+/// The direction to a sun of that elevation in degrees.
+fn sun(elevation_deg: f64) -> DVec3 {
+    let (sin, cos) = elevation_deg.to_radians().sin_cos();
+    DVec3::new(cos, 0.0, sin)
+}
+
+/// Directions above the horizon, even in solid angle.
+fn dome() -> Vec<DVec3> {
+    let direction = |i: u32| {
+        let z = (f64::from(i) + 0.5) / f64::from(DIRECTIONS);
+        // By steps of the golden angle.
+        let (sin, cos) = (f64::from(i) * 2.399_963_229_728_653).sin_cos();
+        let level = (1.0 - z * z).sqrt();
+        DVec3::new(level * cos, level * sin, z)
+    };
+    (0..DIRECTIONS).map(direction).collect()
+}
+
+/// Error of tables as the renderer takes them over the sun's elevation, for clear air and the nine biomes: what certificates find it is
+/// below, and what the tables state.
+///
+/// # Errors
+/// [`RenderError`] if the data do not have what it takes.
+pub fn suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError> {
+    let all: Vec<Option<Biome>> = std::iter::once(None).chain(Biome::ALL.into_iter().map(Some)).collect();
+    let mut points = Vec::new();
+    for (i, &biome) in all.iter().enumerate() {
+        let medium = medium(data, biome)?;
+        let columns = Columns::new(&medium, SHAPE, Tolerance::RENDER);
+        let solved = Solved::new(&medium, SHAPE, ALBEDO, &Resolution::RENDER)?;
+        let coarse = solved.again(&Resolution::COARSE);
+        let from = Place::above(EYE_M);
+        for (k, &elevation) in SUNS.iter().enumerate() {
+            let sun = sun(elevation);
+            let stated = FINER * solved.difference(&coarse, from, sun);
+            let mut add = |panel, value| {
+                let curve = biome.map_or("clear", Biome::name).to_owned();
+                points.push(Point { panel, curve, at: [elevation, 100.0 * value] });
+            };
+            if let Some(verdict) = certify_table(&solved, columns.clone(), (from, sun), &dome(), ROUNDS) {
+                add("below, with 95 % confidence (certificates)", verdict.most);
+            }
+            add("stated by the table (from a coarser one)", stated);
+            progress((i as f64 + (k + 1) as f64 / SUNS.len() as f64) / all.len() as f64);
+        }
+    }
+    points.sort_by_key(|point| point.panel);
+    Ok(Chart {
+        title: "Solved tables over the sun's elevation: error of radiance, 64 directions, 8 wavelengths".to_owned(),
+        axes: ["sun elevation / degrees", "relative error / %"],
+        points,
+    })
+}
+
+/// The renderer's resolution with one part replaced by its number i of four.
+type Vary = fn(Resolution, usize) -> Resolution;
+
+/// What is varied.
+const VARIED: [(&str, Vary); 6] = [
+    ("levels", |r, i| Resolution { levels: [10, 14, 22, 32][i], ..r }),
+    ("suns", |r, i| Resolution { suns: [20, 28, 40, 56][i], ..r }),
+    ("zenith angles", |r, i| Resolution { zeniths: [[4, 2, 3], [5, 3, 4], [7, 4, 5], [10, 6, 8]][i], ..r }),
+    ("steps between levels", |r, i| Resolution { parts: [1, 3, 8, 16][i], ..r }),
+    ("degree of moments", |r, i| Resolution { degree: [4, 8, 14, 20][i], ..r }),
+    ("change by the last order", |r, i| Resolution { change: [3e-2, 5e-3, 5e-4, 5e-5][i], ..r }),
+];
+
+/// Error against cost: one part of the resolution at a time coarser or finer than the renderer's, in desert dust, against a table that
+/// is finer in everything. On one thread.
+///
+/// # Errors
+/// [`RenderError`] if the data do not have what it takes.
+pub fn grids(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError> {
+    let medium = medium(data, Some(Biome::DesertDust))?;
+    let best = Resolution { levels: 40, suns: 64, zeniths: [12, 7, 9], parts: 16, degree: 24, change: 2e-5 };
+    let reference = Solved::new(&medium, SHAPE, ALBEDO, &best)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let mut points = Vec::new();
+    for (k, (name, vary)) in VARIED.iter().enumerate() {
+        for i in 0..4 {
+            let resolution = vary(Resolution::RENDER, i);
+            let start = Instant::now();
+            let solved = pool.install(|| Solved::new(&medium, SHAPE, ALBEDO, &resolution))?;
+            let seconds = start.elapsed().as_secs_f64();
+            for (panel, elevation) in
+                [("sun at 30 degrees", 30.0), ("sun at 0 degrees", 0.0), ("sun at -5 degrees", -5.0)]
+            {
+                let off = solved.difference(&reference, Place::above(EYE_M), sun(elevation));
+                points.push(Point { panel, curve: (*name).to_owned(), at: [seconds, 100.0 * off] });
+            }
+            progress((k as f64 + (i + 1) as f64 / 4.0) / VARIED.len() as f64);
+        }
+    }
+    // By panel, each curve in its order.
+    let order =
+        |panel: &str| ["sun at 30 degrees", "sun at 0 degrees", "sun at -5 degrees"].iter().position(|p| *p == panel);
+    points.sort_by_key(|point| order(point.panel));
+    Ok(Chart {
+        title: "Solved tables of desert dust, 8 wavelengths: difference from a finer one against the time to solve"
+            .to_owned(),
+        axes: ["core-seconds", "rms difference over mean / %"],
+        points,
+    })
+}
