@@ -168,6 +168,10 @@ impl Data {
             Kind::Sun => self.sun = Sun::from_table(&table).map_err(named)?,
             Kind::Observer => self.observer = Observer::from_table(&table).map_err(named)?,
             Kind::Aerosol => self.own_aerosol = Some(Aerosol::from_table(&table).map_err(named)?),
+            Kind::SolvedSky => {
+                let text = "a solved sky is taken from its folder by --keep-tables";
+                return Err(named(TableError::Inconsistent(text.into())).into());
+            }
             Kind::GroundAlbedo => {
                 for (name, spectrum) in GroundAlbedo::from_table(&table).map_err(named)?.spectra {
                     if self.ground_albedo.spectra.contains_key(&name) {

@@ -30,6 +30,8 @@ pub enum Kind {
     GroundAlbedo,
     /// The aerosol of one biome: profiles, cross-sections and phase functions of its species.
     Aerosol,
+    /// The diffuse field of a scene, as the renderer keeps it for later pictures; no part of `data/`.
+    SolvedSky,
 }
 
 impl std::fmt::Display for Kind {
@@ -43,6 +45,7 @@ impl std::fmt::Display for Kind {
             Self::Sun => "sun",
             Self::Observer => "observer",
             Self::GroundAlbedo => "ground-albedo",
+            Self::SolvedSky => "solved-sky",
             Self::Aerosol => "aerosol",
         })
     }

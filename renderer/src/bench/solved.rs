@@ -70,7 +70,7 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
     let start = Instant::now();
     let solved = Solved::new(&medium, shape, albedo, &Resolution::RENDER)?;
     let first = start.elapsed().as_secs_f64();
-    let coarse = solved.again(&Resolution::COARSE);
+    let coarse = solved.again(&Resolution::COARSE, None)?;
     let seconds = [first, start.elapsed().as_secs_f64()];
     let from = Place::above(2.0);
     let camera = Scene { width: Some(WIDTH), height: Some(WIDTH), ..Scene::default() }.camera();

@@ -54,7 +54,7 @@ impl Pair {
             return Ok(Self { solved: Solved::single(medium, shape, [albedo])?, coarse: None });
         }
         let solved = Solved::new(medium, shape, [albedo], &Resolution::FINE)?;
-        let coarse = solved.again(&Resolution::RENDER);
+        let coarse = solved.again(&Resolution::RENDER, None)?;
         Ok(Self { solved, coarse: Some(coarse) })
     }
 }

@@ -25,6 +25,10 @@ pub(super) struct RenderArgs {
     /// adds a ground for --albedo; once for each kind. Those of the scene are then left out
     #[arg(long = "table", value_name = "FILE", help_heading = "Files")]
     pub tables: Vec<String>,
+    /// Keep solved tables in this folder, by a checksum of all that they depend on, and take them from there: another sun, observer
+    /// or camera then needs no solving [default: none are kept]
+    #[arg(long, value_name = "DIR", help_heading = "Files")]
+    pub keep_tables: Option<PathBuf>,
     /// Keep the state of the run in this file, each minute and at the end, for --resume and `airlight merge`
     /// [default: none; with --shard the picture's name with .state, with --resume its file]
     #[arg(long, value_name = "FILE", help_heading = "Files")]

@@ -41,7 +41,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<Outcome, Failure> {
     head.scene.validate()?;
     let scene = head.scene.clone();
     let data = Data::load(&args.files.data).map_err(Failure::error)?;
-    let sky = sky(&scene, &data)?;
+    let sky = sky(&scene, &data, None)?;
     if let Some(difference) = head.difference(&Head::new(&scene, &sky, head.parts.clone())) {
         let folder = args.files.data.display();
         return Err(Failure::usage(format!(

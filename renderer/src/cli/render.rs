@@ -42,7 +42,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     let files = Files::new(&args.files.output, checkpoint(args).as_deref())?;
     let data = Data::load(&args.files.data).map_err(Failure::error)?;
     let pool = super::pool(args.threads)?;
-    let sky = pool.install(|| sky(&scene, &data))?;
+    let folder = args.keep_tables.as_deref();
+    if let Some(folder) = folder {
+        std::fs::create_dir_all(folder).map_err(|error| super::unwritable(folder, &error))?;
+    }
+    let sky = pool.install(|| sky(&scene, &data, folder))?;
     if args.certify.is_some() && !sky.is_solved() {
         return Err(Failure::usage("--certify looks at solved tables: leave --method out"));
     }
@@ -109,8 +113,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
 }
 
 /// The scene turned into something that answers.
-pub(super) fn sky(scene: &Scene, data: &Data) -> Result<Sky, Failure> {
-    Sky::new(scene, data).map_err(|error| match error {
+pub(super) fn sky(scene: &Scene, data: &Data, kept: Option<&Path>) -> Result<Sky, Failure> {
+    Sky::kept(scene, data, kept).map_err(|error| match error {
         RenderError::Scene(error) => error.into(),
         RenderError::Air(error) => Failure::usage(error),
         other => Failure::error(other),

@@ -95,8 +95,8 @@ fn directions(camera: &Camera, (width, height): (u32, u32), packets: &[Box<dyn C
     places.filter_map(|direction| look(direction, packets)).take(DIRECTIONS).collect()
 }
 
-/// Looks at [`DIRECTIONS`] of a picture of solved tables until it is clear, with 95 % confidence, whether their root mean square error
-/// is below `asked`, or [`MOST_ROUNDS`] have passed, or `stop` is set. The sun is the middle of its disc. `None` if the picture
+/// Looks at 128 directions of a picture of solved tables until it is clear, with 95 % confidence, whether their root mean square error
+/// is below `asked`, or each has had 1024 fans, or `stop` is set. The sun is the middle of its disc. `None` if the picture
 /// has no solved tables or sees no light.
 #[must_use]
 pub fn certify(

@@ -37,6 +37,14 @@ impl Sky {
     /// # Errors
     /// [`RenderError`] if the scene names what the data do not have, or a table does not reach.
     pub fn new(scene: &Scene, data: &Data) -> Result<Self, RenderError> {
+        Self::kept(scene, data, None)
+    }
+
+    /// As [`Sky::new`], with solved tables taken from the folder `kept` where they are there, and written to it where not.
+    ///
+    /// # Errors
+    /// As [`Sky::new`], and if a table there cannot be read or written.
+    pub fn kept(scene: &Scene, data: &Data, kept: Option<&Path>) -> Result<Self, RenderError> {
         let with_own;
         let data = if scene.tables.is_empty() {
             data
@@ -72,7 +80,8 @@ impl Sky {
         let air = air.with_haze(haze);
         let sun_direction = scene.sun_direction();
         let place = Place::above(scene.altitude_km * KM);
-        let parts = Parts { wavelengths, albedo: &albedo, air: &air, data, method: scene.method, place, sun_direction };
+        let parts =
+            Parts { wavelengths, albedo: &albedo, air: &air, data, method: scene.method, place, sun_direction, kept };
         let carriers = wavelengths.packets().into_iter().map(|packet| {
             let carrier = match packet.lanes {
                 1 => parts.carry::<1>(&packet),
@@ -250,6 +259,7 @@ struct Parts<'a> {
     method: Method,
     place: Place,
     sun_direction: DVec3,
+    kept: Option<&'a Path>,
 }
 
 impl Parts<'_> {
@@ -261,8 +271,8 @@ impl Parts<'_> {
         let albedo = std::array::from_fn(|lane| self.albedo[(packet.range.start + lane).min(last)]);
         let means = match self.method.estimator() {
             None => {
-                let solved = Solved::new(&medium, shape, albedo, &Resolution::RENDER)?;
-                let coarse = solved.again(&Resolution::COARSE);
+                let solved = Solved::kept(&medium, shape, albedo, &Resolution::RENDER, self.kept)?;
+                let coarse = solved.again(&Resolution::COARSE, self.kept)?;
                 let error = FINER * solved.difference(&coarse, self.place, self.sun_direction);
                 if error.is_nan() || error > MOST_ERROR {
                     return Err(SolveError::Inexact(error).into());

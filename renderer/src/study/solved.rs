@@ -64,7 +64,7 @@ pub fn suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
         let medium = medium(data, biome)?;
         let columns = Columns::new(&medium, SHAPE, Tolerance::RENDER);
         let solved = Solved::new(&medium, SHAPE, ALBEDO, &Resolution::RENDER)?;
-        let coarse = solved.again(&Resolution::COARSE);
+        let coarse = solved.again(&Resolution::COARSE, None)?;
         let from = Place::above(EYE_M);
         for (k, &elevation) in SUNS.iter().enumerate() {
             let sun = sun(elevation);

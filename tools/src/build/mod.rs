@@ -180,6 +180,7 @@ pub fn table(raw: &RawData, kind: Kind) -> Result<Table, TableError> {
         Kind::Observer => light::observer(raw),
         Kind::GroundAlbedo => ground::albedo(raw),
         Kind::Aerosol => Err(TableError::Inconsistent("an aerosol table needs a source and a biome".into())),
+        Kind::SolvedSky => Err(TableError::Inconsistent("a solved sky is the renderer's".into())),
     }
 }
 
@@ -195,6 +196,7 @@ pub(crate) fn accept(table: &Table) -> Result<(), TableError> {
         Kind::Observer => views::Observer::from_table(table).map(drop),
         Kind::GroundAlbedo => views::GroundAlbedo::from_table(table).map(drop),
         Kind::Aerosol => views::Aerosol::from_table(table).map(drop),
+        Kind::SolvedSky => Ok(()),
     }
 }
 

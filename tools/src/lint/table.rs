@@ -77,6 +77,7 @@ fn view(table: &Table) -> Option<Finding> {
         Kind::Observer => views::Observer::from_table(table).err(),
         Kind::GroundAlbedo => views::GroundAlbedo::from_table(table).err(),
         Kind::Aerosol => views::Aerosol::from_table(table).err(),
+        Kind::SolvedSky => None,
     }?
     .to_string();
     let named: Vec<&str> = table.fields.iter().map(|f| f.name.as_str()).filter(|name| refused.contains(name)).collect();
@@ -153,7 +154,7 @@ fn sheets(table: &Table) -> Vec<Sheet> {
         ),
         Kind::GroundAlbedo => grounds(table),
         Kind::Aerosol => species(table),
-        Kind::OzoneProfiles | Kind::OzoneLayers => Vec::new(),
+        Kind::OzoneProfiles | Kind::OzoneLayers | Kind::SolvedSky => Vec::new(),
     }
 }
 

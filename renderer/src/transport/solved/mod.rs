@@ -15,6 +15,7 @@
 //! table's sources. Radiance is never interpolated.
 
 mod certify;
+mod file;
 mod first;
 mod grid;
 mod guide;
@@ -45,7 +46,9 @@ use rayon::prelude::*;
 use rays::Line;
 use species::Species;
 use std::f64::consts::FRAC_1_PI;
+use std::path::Path;
 use std::sync::Arc;
+use tables::TableError;
 
 /// Why a scene has no solved table.
 #[derive(Debug, thiserror::Error)]
@@ -59,6 +62,9 @@ pub enum SolveError {
     /// The atmosphere without its forward peaks is impossible.
     #[error(transparent)]
     Medium(#[from] MediumError),
+    /// A kept table cannot be read or written.
+    #[error(transparent)]
+    Kept(#[from] TableError),
 }
 
 fn off(error: f64) -> String {
@@ -159,6 +165,21 @@ impl<const L: usize> Solved<L> {
         albedo: [f64; L],
         resolution: &Resolution,
     ) -> Result<Self, SolveError> {
+        Self::kept(medium, shape, albedo, resolution, None)
+    }
+
+    /// As [`Solved::new`], but the table is taken from the folder `kept` if it is there, by a checksum of all that it depends on, and
+    /// written to it if it is not.
+    ///
+    /// # Errors
+    /// As [`Solved::new`], and [`SolveError::Kept`].
+    pub fn kept(
+        medium: &Medium<L>,
+        shape: Shape,
+        albedo: [f64; L],
+        resolution: &Resolution,
+        kept: Option<&Path>,
+    ) -> Result<Self, SolveError> {
         let Shape::Sphere { radius_m } = shape else { return Err(SolveError::Refused(ROUND)) };
         if resolution.levels < 4 || resolution.suns < 4 || resolution.parts < 1 || resolution.degree > MOST_DEGREE {
             return Err(SolveError::Refused(SIZES));
@@ -167,7 +188,7 @@ impl<const L: usize> Solved<L> {
         let (species, medium) = species::scaled(medium, degree)?;
         let columns = Columns::new(&medium, shape, Tolerance::SOLVE);
         let optics = Optics { moments: Moments::new(degree), species, medium, columns, albedo };
-        Ok(Self::with(Arc::new(optics), radius_m, resolution))
+        Self::with(Arc::new(optics), radius_m, resolution, kept)
     }
 
     /// The first order alone, with nothing cut off the phase functions: only [`Solved::radiance`] with `single` is of use.
@@ -184,16 +205,38 @@ impl<const L: usize> Solved<L> {
         Ok(Self { optics: Arc::new(optics), grid, field, orders: 1, residual: 0.0 })
     }
 
-    fn with(optics: Arc<Optics<L>>, radius: f64, resolution: &Resolution) -> Self {
+    fn with(
+        optics: Arc<Optics<L>>,
+        radius: f64,
+        resolution: &Resolution,
+        kept: Option<&Path>,
+    ) -> Result<Self, SolveError> {
         let grid = Grid::new(&optics.medium, radius, resolution);
-        let (field, orders, residual) = Setup { grid: &grid, optics: &optics }.solve(resolution);
-        Self { optics, grid, field, orders, residual }
+        let solve = || Setup { grid: &grid, optics: &optics }.solve(resolution);
+        let (field, orders, residual) = match kept {
+            None => solve(),
+            Some(folder) => {
+                let (key, moments) = (file::key(&optics, radius, resolution), optics.moments.count());
+                let path = file::path(folder, &key);
+                if path.exists() {
+                    file::solution(&tables::file::read(&path)?, &grid, moments, &key)
+                        .map_err(|error| error.at(&path))?
+                } else {
+                    let solution = solve();
+                    tables::file::write(&path, &file::table(&solution, &grid, moments, &key)?)?;
+                    solution
+                }
+            }
+        };
+        Ok(Self { optics, grid, field, orders, residual })
     }
 
-    /// The same atmosphere solved again, with as many moments, on another grid.
-    #[must_use]
-    pub fn again(&self, resolution: &Resolution) -> Self {
-        Self::with(Arc::clone(&self.optics), self.grid.radius, resolution)
+    /// The same atmosphere solved again, with as many moments, on another grid; or taken from a folder as by [`Solved::kept`].
+    ///
+    /// # Errors
+    /// [`SolveError::Kept`], which is none without a folder.
+    pub fn again(&self, resolution: &Resolution, kept: Option<&Path>) -> Result<Self, SolveError> {
+        Self::with(Arc::clone(&self.optics), self.grid.radius, resolution, kept)
     }
 
     /// Root mean square over 64 directions and all wavelengths of the difference to the radiances of another solution of the same

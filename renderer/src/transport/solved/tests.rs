@@ -114,9 +114,10 @@ fn the_table_knows_how_exact_it_is() {
     // Half the distance from the coarser solution, against the distance from one that is finer in everything.
     let medium = clear();
     let solved = Solved::new(&medium, EARTH, [0.3; 2], &Resolution::RENDER).expect("round");
-    let coarse = solved.again(&Resolution::COARSE);
-    let fine =
-        solved.again(&Resolution { levels: 32, suns: 64, zeniths: [10, 7, 8], parts: 8, degree: 2, change: 5e-4 });
+    let coarse = solved.again(&Resolution::COARSE, None).expect("solved");
+    let fine = solved
+        .again(&Resolution { levels: 32, suns: 64, zeniths: [10, 7, 8], parts: 8, degree: 2, change: 5e-4 }, None)
+        .expect("solved");
     for sun_zenith in [20.0, 80.0, 90.0, 95.0] {
         let (from, sun) = (Place::above(2.0), towards(sun_zenith, 0.0));
         let (stated, off) = (FINER * solved.difference(&coarse, from, sun), solved.difference(&fine, from, sun));
@@ -196,11 +197,35 @@ fn air_that_only_absorbs_leaves_the_ground() {
     assert_eq!(solved.radiance(Place::above(2.0), towards(20.0, 0.0), sun, false), [0.0]);
 }
 
+#[test]
+fn kept_tables_are_those_that_were_solved() {
+    let folder = std::env::temp_dir().join(format!("airlight-kept-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let medium = mixed();
+    let coarse = Resolution { levels: 10, suns: 20, zeniths: [4, 2, 3], parts: 2, degree: 6, change: 5e-4 };
+    let solve = |albedo: f64| Solved::kept(&medium, EARTH, [albedo; 4], &coarse, Some(&folder));
+    let files = || std::fs::read_dir(&folder).expect("a folder").map(|file| file.expect("a file").path());
+    let look = |solved: &Solved<4>| solved.radiance(Place::above(2.0), towards(70.0, 10.0), towards(88.0, 0.0), false);
+    let (first, again) = (solve(0.2).expect("solved"), solve(0.2).expect("read"));
+    assert_eq!((look(&first), first.convergence()), (look(&again), again.convergence()));
+    assert_eq!(files().count(), 1);
+    let other = solve(0.3).expect("solved");
+    assert_ne!(look(&first), look(&other));
+    assert_eq!(files().count(), 2, "other inputs have another file");
+    // What is damaged is said, and not replaced.
+    let path = files().next().expect("a file");
+    std::fs::write(&path, b"nothing").expect("written");
+    let refused = [0.2, 0.3].map(solve).into_iter().find_map(Result::err).expect("refused").to_string();
+    assert!(refused.contains(path.to_str().expect("text")), "{refused}");
+    std::fs::remove_dir_all(&folder).expect("removed");
+}
+
 /// Tables of one atmosphere that are as good as tests need, coarse, 5 % too bright, and without a moment.
 fn spoiled(medium: &Medium<4>, albedo: [f64; 4]) -> [Solved<4>; 4] {
     let coarse = Resolution { levels: 10, suns: 20, zeniths: [4, 2, 3], parts: 2, degree: 6, change: 5e-4 };
     let [sound, coarse] = [TEST, coarse].map(|grid| Solved::new(medium, EARTH, albedo, &grid).expect("round"));
-    let (mut bright, mut wrong) = (sound.again(&TEST), sound.again(&TEST));
+    let (mut bright, mut wrong) =
+        (sound.again(&TEST, None).expect("solved"), sound.again(&TEST, None).expect("solved"));
     for moment in bright.field.moments.iter_mut().chain(&mut bright.field.ground).flatten() {
         *moment *= 1.05;
     }
