@@ -47,7 +47,7 @@ impl Fan {
 const SURVIVAL: f64 = 2.0;
 
 /// Bins of the line of sight.
-const SIGHT: usize = 24;
+const SIGHT: usize = 48;
 
 /// The share of all points that are kept with equal probability.
 const DEFENSIVE: f64 = 0.02;

@@ -9,19 +9,19 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Zenith angles: bins above the level, between it and the horizon, below the horizon.
-const ZENITHS: [usize; 3] = [6, 2, 4];
+const ZENITHS: [usize; 3] = [10, 4, 6];
 const ALL_ZENITHS: usize = ZENITHS[0] + ZENITHS[1] + ZENITHS[2];
 
 /// Azimuths from the sun's to the opposite one; both sides are alike.
-const AZIMUTHS: usize = 4;
+const AZIMUTHS: usize = 8;
 
 const DIRECTIONS: usize = ALL_ZENITHS * AZIMUTHS;
 
 /// Distances.
-pub(super) const DISTANCES: usize = 12;
+pub(super) const DISTANCES: usize = 16;
 
 /// The share of all densities that is even.
-pub(super) const EVEN: f64 = 0.15;
+pub(super) const EVEN: f64 = 0.1;
 
 /// Between the sun's zenith angles for which there is a density, in radians.
 const SUN_STEP: f64 = 4.0 * PI / 180.0;
