@@ -114,6 +114,16 @@ pub fn around(axis: DVec3, cosine: f64, turn: f64) -> DVec3 {
     (tangent * (sine * cos) + bitangent * (sine * sin) + axis * cosine).normalize()
 }
 
+/// Direction `i` of `count` that lie evenly in solid angle at heights z from `highest` down to `lowest`, by steps of the golden angle.
+#[must_use]
+pub fn spiral(i: u32, count: u32, [lowest, highest]: [f64; 2]) -> DVec3 {
+    const GOLDEN: f64 = 2.399_963_229_728_653;
+    let z = highest - (highest - lowest) * (f64::from(i) + 0.5) / f64::from(count);
+    let (sin, cos) = (f64::from(i) * GOLDEN).sin_cos();
+    let level = ((1.0 - z) * (1.0 + z)).sqrt();
+    DVec3::new(level * cos, level * sin, z)
+}
+
 /// A direction with density cos(theta)/pi about `normal` (Lambert's law).
 #[must_use]
 pub fn cosine_hemisphere(normal: DVec3, [u, v]: [f64; 2]) -> DVec3 {

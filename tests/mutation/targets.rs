@@ -2,11 +2,19 @@
 
 use super::Form;
 use crate::root;
+use renderer::atmosphere::{Component, Medium};
 use renderer::film::{Film, exr};
+use renderer::geometry::Shape;
+use renderer::phase::Phase;
 use renderer::render::{Head, Part, Shard, State};
 use renderer::scene::Scene;
-use std::path::Path;
-use tables::{Table, TableError, file, views};
+use renderer::transport::{Resolution, Solved};
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+use tables::units::EARTH_RADIUS_M;
+use tables::{Axis, Curve, Outside, Scale, Table, TableError, file, views};
 use tools::mie_tasks::{Alike, Distributions};
 use tools::own;
 use tools::raw::{self, Source};
@@ -161,6 +169,7 @@ pub fn targets() -> Vec<Target> {
     let picture = [picture.concat(), length.to_vec(), full, b"\0and pixels".to_vec()].concat();
     add("picture", Form::Binary, true, vec![picture], picture_scene);
     add("state", Form::Binary, true, vec![run_state()], state);
+    add("kept solved table", Form::Table, false, vec![kept_table()], kept);
     let cases = ["radiances", "renderers"].map(|name| file(&format!("tests/reference/{name}.json")));
     add("radiance cases", Form::Text, false, cases.into(), |bytes| {
         renderer::cases::parse(Path::new("input.json"), bytes).map(drop).map_err(|e| e.to_string())
@@ -171,6 +180,54 @@ pub fn targets() -> Vec<Target> {
         target.free = JUDGED;
     }
     list
+}
+
+/// Solves a small atmosphere, or takes its table from a folder.
+fn solve(folder: &Path) -> Result<(), String> {
+    let axis = Axis::uniform("altitude", "m", 0.0, 1e4, 7).map_err(|e| e.to_string())?;
+    let density = axis.nodes.iter().map(|z| (-z / 8e3).exp()).collect();
+    let density = Curve::new(axis.beyond(Outside::Zero), Scale::Logarithmic, density).map_err(|e| e.to_string())?;
+    let air =
+        Component { density, scattering: [1e-5; 4], absorption: [0.0; 4], phase: Phase::Rayleigh { gamma: [0.0; 4] } };
+    let medium = Medium::new(vec![air], 6e4).map_err(|e| e.to_string())?;
+    let grid = Resolution { levels: 4, suns: 5, zeniths: [2, 1, 2], parts: 1, degree: 2, change: 0.1 };
+    let shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
+    Solved::kept(&medium, shape, [0.1; 4], &grid, Some(folder)).map(drop).map_err(|e| e.to_string())
+}
+
+/// A folder of one call.
+fn folder() -> PathBuf {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    let folder = std::env::temp_dir().join(format!("airlight-kept-{}-{count}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// The name and the bytes of the table that [`solve`] keeps.
+fn kept_file() -> &'static (OsString, Vec<u8>) {
+    static FILE: OnceLock<(OsString, Vec<u8>)> = OnceLock::new();
+    FILE.get_or_init(|| {
+        let folder = folder();
+        solve(&folder).expect("solved");
+        let file = std::fs::read_dir(&folder).expect("a folder").next().expect("a file").expect("a file");
+        let kept = (file.file_name(), std::fs::read(file.path()).expect("a file"));
+        std::fs::remove_dir_all(folder).expect("removed");
+        kept
+    })
+}
+
+fn kept_table() -> Vec<u8> {
+    kept_file().1.clone()
+}
+
+/// Reads a kept table as the renderer does: by the name that its inputs give it.
+fn kept(bytes: &[u8]) -> Result<(), String> {
+    let folder = folder();
+    std::fs::write(folder.join(&kept_file().0), bytes).expect("written");
+    let read = solve(&folder);
+    std::fs::remove_dir_all(folder).expect("removed");
+    read
 }
 
 /// Decodes a table and makes a view of it, as `renderer::data` does, which gives the file back before the view is made.

@@ -236,11 +236,11 @@ pub fn certificate<'a>(case: &Case, solved: &'a Solved<1>, columns: &Columns<1>)
 
 /// Measures one direction by a certificate: fans, at least 64, until `seconds` have passed. A path is a fan here.
 #[must_use]
-pub fn measure_certified(certificate: &Certificate<'_, 1>, fan: Fan, view: (f64, f64), seconds: f64) -> Cost {
+pub fn measure_certified(certificate: &Certificate<'_, 1>, view: (f64, f64), seconds: f64) -> Cost {
     let direction = towards(view.0, view.1);
     let time = |fans: u32| {
         let start = Instant::now();
-        let found = certificate.radiance(direction, fan, fans, 0, 0);
+        let found = certificate.radiance(direction, Fan::USUAL, fans, 0, 0);
         (start.elapsed().as_secs_f64(), found)
     };
     let least = |fans: u32, times: u32| (0..times).map(|_| time(fans).0).fold(f64::INFINITY, f64::min);
@@ -263,7 +263,7 @@ pub fn measure_certified(certificate: &Certificate<'_, 1>, fan: Fan, view: (f64,
 }
 
 /// The direction of a zenith angle and an azimuth from the sun, in degrees.
-fn towards(zenith: f64, azimuth: f64) -> DVec3 {
+pub(crate) fn towards(zenith: f64, azimuth: f64) -> DVec3 {
     let ((sin, cos), (sin_a, cos_a)) = (zenith.to_radians().sin_cos(), azimuth.to_radians().sin_cos());
     DVec3::new(sin * cos_a, sin * sin_a, cos)
 }

@@ -7,7 +7,7 @@ use crate::atmosphere::{Columns, Medium};
 use crate::bench;
 use crate::data::Data;
 use crate::scene::SceneError;
-use crate::transport::{Estimator, Fan};
+use crate::transport::Estimator;
 use std::time::Instant;
 use tables::views::Biome;
 
@@ -123,7 +123,7 @@ fn certified(case: &bench::Case, (medium, columns): (&Medium<1>, &Columns<1>), s
     let before = start.elapsed().as_secs_f64();
     println!("  certified; table in {table:.3} s, guide in {:.3} s", before - table);
     let costs = case.views.iter().map(|&view| {
-        let cost = bench::measure_certified(&certificate, Fan::USUAL, view, seconds);
+        let cost = bench::measure_certified(&certificate, view, seconds);
         print_cost(&cost, "fan");
         cost.seconds_to_1_percent()
     });

@@ -14,12 +14,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Directions in which a picture is looked at.
 const DIRECTIONS: usize = 128;
 
-/// Fans of a direction and a round, and the most rounds.
+/// Fans of a direction and a round; after how many rounds the error is looked at.
 const FANS: u32 = 8;
-const MOST_ROUNDS: u32 = 128;
+const LOOKS: [u32; 6] = [4, 8, 16, 32, 64, 128];
 
-/// Standard errors within which a number lies with 95 % confidence, on one side.
-const CONFIDENT: f64 = 1.645;
+/// Standard errors that a number is below with 95 % confidence: of one look, and of each of [`LOOKS`] so that the six together
+/// have it (5 % / 6, Bonferroni).
+const ONE_LOOK: f64 = 1.645;
+const SIX_LOOKS: f64 = 2.394;
 
 /// What a certificate says about the tables of a picture; errors are relative to radiance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -108,19 +110,20 @@ pub fn certify(
 ) -> Option<Verdict> {
     let packets = sky.certificates()?;
     let mut all = directions(&scene.camera(), scene.size(), &packets);
-    let mut verdict = None;
     if all.is_empty() {
         return None;
     }
-    for round in 0..MOST_ROUNDS {
-        go_round(&mut all, &packets, scene.seed, round);
-        let judged = judge(&all, round + 1, asked);
+    let (mut round, mut verdict) = (0, None);
+    for rounds in LOOKS {
+        while round < rounds && !(stop.load(Ordering::Relaxed) && round > 0) {
+            go_round(&mut all, &packets, scene.seed, round);
+            round += 1;
+        }
+        let judged = judge(&all, round, asked, SIX_LOOKS);
         verdict = Some(judged);
         observe(judged.most);
-        // Few fans know little of their own spread.
         let (square, margin) = (judged.rms.powi(2), judged.most.powi(2) - judged.rms.powi(2));
-        let beyond = round + 1 >= 16 && square - margin > asked * asked;
-        if (judged.holds() && round + 1 >= 4) || beyond || stop.load(Ordering::Relaxed) {
+        if judged.holds() || square - margin > asked * asked || round < rounds {
             break;
         }
     }
@@ -155,7 +158,7 @@ pub fn certify_table<const L: usize>(
     for round in 0..rounds {
         go_round(&mut all, &packets, 0, round);
     }
-    (!all.is_empty() && rounds > 0).then(|| judge(&all, rounds, f64::INFINITY))
+    (!all.is_empty() && rounds > 0).then(|| judge(&all, rounds, f64::INFINITY, ONE_LOOK))
 }
 
 /// A direction and what the tables say of it; `None` in the dark.
@@ -165,8 +168,8 @@ fn look(direction: DVec3, packets: &[Box<dyn Certifies + '_>]) -> Option<Looked>
     table.iter().all(|&light| light > 0.0).then_some(Looked { direction, table, sums })
 }
 
-/// The verdict after some rounds.
-fn judge(all: &[Looked], rounds: u32, asked: f64) -> Verdict {
+/// The verdict after some rounds, the bound so many standard errors above.
+fn judge(all: &[Looked], rounds: u32, asked: f64, confident: f64) -> Verdict {
     let n = f64::from(rounds);
     let mut worst = (0.0_f64, 0.0_f64);
     // Of each direction, means over wavelengths: error, and squared error without what noise adds.
@@ -200,7 +203,7 @@ fn judge(all: &[Looked], rounds: u32, asked: f64) -> Verdict {
     Verdict {
         asked,
         rms: square.sqrt(),
-        most: (square + CONFIDENT * error).sqrt(),
+        most: (square + confident * error).sqrt(),
         mean: mean_of(&|row| row.0),
         worst,
         size: (rows.len(), rows.len() as u64 * u64::from(rounds * FANS)),
@@ -220,7 +223,7 @@ mod tests {
             Looked { direction: DVec3::Z, table: vec![1.0], sums: vec![(4.0 * truth, 16.0 * 0.03 * 0.03)] }
         };
         let all: Vec<_> = (0..100).map(looked).collect();
-        let verdict = judge(&all, 4, 0.1);
+        let verdict = judge(&all, 4, 0.1, ONE_LOOK);
         assert!((verdict.rms - 0.01).abs() < 1e-9 && (verdict.mean.0 - 0.01).abs() < 1e-12, "{verdict:?}");
         assert!(verdict.holds() && verdict.most > 0.012, "{verdict:?}");
     }

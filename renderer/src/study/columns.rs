@@ -5,6 +5,7 @@
 
 use super::{Chart, Point};
 use crate::atmosphere::{AirError, Columns, Component, GAUSS_4, Medium, MediumError, Tolerance};
+use crate::bench::towards;
 use crate::data::Data;
 use crate::geometry::{Place, Shape};
 use crate::phase::Phase;
@@ -263,7 +264,7 @@ impl<'a> Right<'a> {
             let even = (0..=240).map(move |i| (90.0 + dip) * f64::from(i) / 240.0);
             // The last arc minute above the horizon by seconds.
             let grazing = (1..60).map(move |i| 90.0 + dip - f64::from(i) / 3600.0);
-            even.chain(grazing).map(move |zenith| (Place::above(h), towards(zenith)))
+            even.chain(grazing).map(move |zenith| (Place::above(h), towards(zenith, 0.0)))
         });
         let rays: Vec<_> = rays.collect();
         let rays = rays
@@ -273,7 +274,7 @@ impl<'a> Right<'a> {
             .collect();
         let sights: Vec<_> = EYES
             .iter()
-            .flat_map(|&eye| SIGHTS.map(|zenith| (eye, towards(zenith), line(medium, eye, towards(zenith)))))
+            .flat_map(|&eye| SIGHTS.map(|zenith| (eye, towards(zenith, 0.0), line(medium, eye, towards(zenith, 0.0)))))
             .collect();
         let mut right = Self { medium, rays, sights, single: Vec::new() };
         right.single = right.singles(&Lookup::Exact(medium));
@@ -285,7 +286,7 @@ impl<'a> Right<'a> {
         self.sights
             .par_iter()
             .flat_map_iter(|(eye, direction, nodes)| {
-                SUNS.map(|zenith| single(lookup, nodes, (*eye, *direction), towards(zenith)))
+                SUNS.map(|zenith| single(lookup, nodes, (*eye, *direction), towards(zenith, 0.0)))
             })
             .collect()
     }
@@ -336,11 +337,6 @@ fn haze() -> Result<Medium<1>, MediumError> {
 
 fn towards_cosine(mu: f64) -> DVec3 {
     DVec3::new(((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt(), 0.0, mu)
-}
-
-fn towards(zenith_deg: f64) -> DVec3 {
-    let (sin, cos) = zenith_deg.to_radians().sin_cos();
-    DVec3::new(sin, 0.0, cos)
 }
 
 /// Computes the study: for each kind of table and size the largest errors of the three skies. `progress` is told the share that is done.

@@ -2,9 +2,11 @@
 
 use super::{Chart, Point};
 use crate::atmosphere::{Columns, Medium, Tolerance};
+use crate::bench::towards;
 use crate::data::Data;
 use crate::geometry::{Place, Shape};
 use crate::render::{RenderError, Sky, certify_table};
+use crate::sampling::spiral;
 use crate::scene::Scene;
 use crate::transport::{FINER, Method, Resolution, Solved};
 use glam::DVec3;
@@ -34,22 +36,9 @@ fn medium(data: &Data, biome: Option<Biome>) -> Result<Medium<WAVELENGTHS>, Rend
     Ok(Sky::new(&scene, data)?.air().medium(&nm)?)
 }
 
-/// The direction to a sun of that elevation in degrees.
-fn sun(elevation_deg: f64) -> DVec3 {
-    let (sin, cos) = elevation_deg.to_radians().sin_cos();
-    DVec3::new(cos, 0.0, sin)
-}
-
 /// Directions above the horizon, even in solid angle.
 fn dome() -> Vec<DVec3> {
-    let direction = |i: u32| {
-        let z = (f64::from(i) + 0.5) / f64::from(DIRECTIONS);
-        // By steps of the golden angle.
-        let (sin, cos) = (f64::from(i) * 2.399_963_229_728_653).sin_cos();
-        let level = (1.0 - z * z).sqrt();
-        DVec3::new(level * cos, level * sin, z)
-    };
-    (0..DIRECTIONS).map(direction).collect()
+    (0..DIRECTIONS).map(|i| spiral(i, DIRECTIONS, [0.0, 1.0])).collect()
 }
 
 /// Error of tables as the renderer takes them over the sun's elevation, for clear air and the nine biomes: what certificates find it is
@@ -67,7 +56,7 @@ pub fn suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
         let coarse = solved.again(&Resolution::COARSE, None)?;
         let from = Place::above(EYE_M);
         for (k, &elevation) in SUNS.iter().enumerate() {
-            let sun = sun(elevation);
+            let sun = towards(90.0 - elevation, 0.0);
             let stated = FINER * solved.difference(&coarse, from, sun);
             let mut add = |panel, value| {
                 let curve = biome.map_or("clear", Biome::name).to_owned();
@@ -101,6 +90,9 @@ const VARIED: [(&str, Vary); 6] = [
     ("change by the last order", |r, i| Resolution { change: [3e-2, 5e-3, 5e-4, 5e-5][i], ..r }),
 ];
 
+/// Panels, and zenith angles of the sun in degrees.
+const SEEN: [(&str, f64); 3] = [("sun at 30 degrees", 60.0), ("sun at 0 degrees", 90.0), ("sun at -5 degrees", 95.0)];
+
 /// Error against cost: one part of the resolution at a time coarser or finer than the renderer's, in desert dust, against a table that
 /// is finer in everything. On one thread.
 ///
@@ -111,26 +103,26 @@ pub fn grids(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rend
     let best = Resolution { levels: 40, suns: 64, zeniths: [12, 7, 9], parts: 16, degree: 24, change: 2e-5 };
     let reference = Solved::new(&medium, SHAPE, ALBEDO, &best)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let mut points = Vec::new();
+    let mut rows = Vec::new();
     for (k, (name, vary)) in VARIED.iter().enumerate() {
         for i in 0..4 {
             let resolution = vary(Resolution::RENDER, i);
             let start = Instant::now();
             let solved = pool.install(|| Solved::new(&medium, SHAPE, ALBEDO, &resolution))?;
             let seconds = start.elapsed().as_secs_f64();
-            for (panel, elevation) in
-                [("sun at 30 degrees", 30.0), ("sun at 0 degrees", 0.0), ("sun at -5 degrees", -5.0)]
-            {
-                let off = solved.difference(&reference, Place::above(EYE_M), sun(elevation));
-                points.push(Point { panel, curve: (*name).to_owned(), at: [seconds, 100.0 * off] });
-            }
+            let off = SEEN.map(|(_, zenith)| solved.difference(&reference, Place::above(EYE_M), towards(zenith, 0.0)));
+            rows.push((*name, seconds, off));
             progress((k as f64 + (i + 1) as f64 / 4.0) / VARIED.len() as f64);
         }
     }
-    // By panel, each curve in its order.
-    let order =
-        |panel: &str| ["sun at 30 degrees", "sun at 0 degrees", "sun at -5 degrees"].iter().position(|p| *p == panel);
-    points.sort_by_key(|point| order(point.panel));
+    let point = |panel, k: usize| {
+        rows.iter().map(move |&(name, seconds, off)| Point {
+            panel,
+            curve: String::from(name),
+            at: [seconds, 100.0 * off[k]],
+        })
+    };
+    let points = (0..).zip(SEEN).flat_map(|(k, (panel, _))| point(panel, k)).collect();
     Ok(Chart {
         title: "Solved tables of desert dust, 8 wavelengths: difference from a finer one against the time to solve"
             .to_owned(),

@@ -64,8 +64,7 @@ pub(super) fn trace<const L: usize>(
         let reflects = chord.ends_on_ground() && problem.albedo.iter().any(|&albedo| albedo > 0.0);
         if reflects {
             // What the ground sends straight on, of the sun and of the environment's own reflection by the path.
-            let (_, to) = chord.ends();
-            let ground = foot(problem, place, direction, &chord, to);
+            let ground = chord.foot(place, direction);
             if let Some((sun, light)) = &sun {
                 let cosine = ground.up.dot(*sun);
                 if cosine > 0.0
@@ -83,13 +82,12 @@ pub(super) fn trace<const L: usize>(
         match fly(&chord, &total, reflects, hero, flight, &mut carried) {
             None => break,
             Some(Vertex::Ground) => {
-                place = foot(problem, place, direction, &chord, chord.ends().1);
+                place = chord.foot(place, direction);
                 carried.multiply(|j| problem.albedo[j], |_| 1.0);
                 direction = cosine_hemisphere(place.up, [angle, turn]);
             }
             Some(Vertex::Air(s)) => {
-                place = place.advance(problem.shape, direction, chord.travelled(s));
-                place.altitude_m = place.altitude_m.clamp(0.0, problem.medium.top_m());
+                place = chord.place(place, direction, s);
                 let local = problem.medium.local_at(place.altitude_m);
                 if order > 1
                     && !low
@@ -138,19 +136,6 @@ fn sunward(place: Place, sun: Option<DVec3>) -> Option<Lobe> {
     }
     let level = (sun - place.up * sine).try_normalize()?;
     Some(Lobe { axis: (level + place.up * 0.1).normalize() })
-}
-
-/// The place on the ground where a chord ends at `to`.
-fn foot<const L: usize>(
-    problem: &Problem<'_, L>,
-    place: Place,
-    direction: DVec3,
-    chord: &Chord<'_, L>,
-    to: f64,
-) -> Place {
-    let mut foot = place.advance(problem.shape, direction, chord.travelled(to).max(0.0));
-    foot.altitude_m = 0.0;
-    foot
 }
 
 /// Where a flight ends.
@@ -307,8 +292,7 @@ impl<const L: usize> Sight<'_, L> {
     /// `None` if the planet hides the sun.
     #[inline]
     fn at(&self, s: f64) -> Option<Seen<L>> {
-        let mut there = self.place.advance(self.problem.shape, self.direction, self.chord.travelled(s));
-        there.altitude_m = there.altitude_m.clamp(0.0, self.problem.medium.top_m());
+        let there = self.chord.place(self.place, self.direction, s);
         let through = self.problem.columns.transmittance(there, self.sun)?;
         Some(Seen { scattered: self.towards.at(&self.problem.medium.local_at(there.altitude_m)), through })
     }

@@ -219,6 +219,23 @@ impl<const L: usize> Chord<'_, L> {
         s - self.eye
     }
 
+    /// The place at `s`, of the ray that begins at `from` in that direction; rounding puts it neither under the ground nor above the air.
+    #[must_use]
+    #[inline(always)]
+    pub fn place(&self, from: Place, direction: DVec3, s: f64) -> Place {
+        let mut place = from.advance(self.columns.shape, direction, self.travelled(s));
+        place.altitude_m = place.altitude_m.clamp(0.0, self.columns.top_m());
+        place
+    }
+
+    /// The place on the ground where the ray ends, if it does.
+    #[must_use]
+    #[inline(always)]
+    pub fn foot(&self, from: Place, direction: DVec3) -> Place {
+        let place = from.advance(self.columns.shape, direction, self.travelled(self.to).max(0.0));
+        Place { altitude_m: 0.0, ..place }
+    }
+
     /// Altitude in m of the perigee of the line, below 0 if it cuts the planet.
     #[must_use]
     pub fn perigee(&self) -> f64 {

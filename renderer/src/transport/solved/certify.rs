@@ -21,7 +21,7 @@ use super::line::MOST_SPECIES;
 use super::{Optics, Solved};
 use crate::atmosphere::{Chord, Columns, Tolerance};
 use crate::geometry::{Place, Shape};
-use crate::sampling::{Sampler, around};
+use crate::sampling::{Sampler, around, spiral};
 use crate::vectors::{exp_minus, vectorised};
 use glam::DVec3;
 use pulp::NullaryFnOnce;
@@ -43,8 +43,9 @@ impl Fan {
     pub const USUAL: Self = Self { first: 128, kept: 2, further: 64 };
 }
 
-/// A path goes on with this times its importance, at most 1.
+/// A path goes on with this times its importance, within [`CHANCES`]: also where the table says that nothing is.
 const SURVIVAL: f64 = 2.0;
+const CHANCES: (f64, f64) = (0.05, 1.0);
 
 /// Bins of the line of sight.
 const SIGHT: usize = 48;
@@ -68,28 +69,21 @@ pub(super) struct Source<const L: usize> {
 #[derive(Debug)]
 pub(super) struct Sources<'a, const L: usize> {
     pub(super) solved: &'a Solved<L>,
-    /// Columns of the table's air, and of the true one.
-    pub(super) columns: &'a Columns<L>,
+    /// Columns of the true air.
     truth: &'a Columns<L>,
+    /// Those of the table's air, if that is another.
+    scaled: Option<&'a Columns<L>>,
 }
 
-impl<const L: usize> Sources<'_, L> {
+impl<'a, const L: usize> Sources<'a, L> {
     fn optics(&self) -> &Optics<L> {
         &self.solved.optics
     }
 
-    /// Whether the table's air is the true one.
-    fn is_whole(&self) -> bool {
-        std::ptr::eq(self.columns, self.truth)
-    }
-
-    /// The place at `s` of a chord that begins at `from`.
+    /// Columns of the table's air.
     #[inline(always)]
-    pub(super) fn place(&self, chord: &Chord<'_, L>, from: Place, direction: DVec3, s: f64) -> Place {
-        let shape = Shape::Sphere { radius_m: self.solved.grid.radius };
-        let mut place = from.advance(shape, direction, chord.travelled(s));
-        place.altitude_m = place.altitude_m.clamp(0.0, self.optics().medium.top_m());
-        place
+    pub(super) fn columns(&self) -> &'a Columns<L> {
+        self.scaled.unwrap_or(self.truth)
     }
 
     /// Scattering coefficients of the species, without what goes straight on.
@@ -107,8 +101,9 @@ impl<const L: usize> Sources<'_, L> {
     /// Sunlight that arrives with the table's extinction and with the true one; none in the planet's shadow.
     #[inline(always)]
     fn sunlight(&self, place: Place, sun: DVec3) -> Option<[[f64; L]; 2]> {
-        let through = self.columns.transmittance(place, sun)?;
-        Some([through, if self.is_whole() { through } else { self.truth.transmittance(place, sun)? }])
+        let truly = self.truth.transmittance(place, sun)?;
+        let Some(scaled) = self.scaled else { return Some([truly; 2]) };
+        Some([scaled.transmittance(place, sun)?, truly])
     }
 
     /// Of a metre of air into the direction looked in, in m^-1 sr^-1 per unit solar irradiance.
@@ -159,13 +154,15 @@ impl<const L: usize> Sources<'_, L> {
 }
 
 /// Where light is scattered or reflected.
-#[derive(Debug, Clone, Copy)]
-struct Vertex<const L: usize> {
+#[derive(Clone, Copy)]
+struct Vertex<'c, const L: usize> {
     place: Place,
     /// The direction looked in from the vertex before; none at the ground.
     direction: Option<DVec3>,
     /// Scattering coefficients of the species in the air, without what goes straight on.
     scattering: [[f64; L]; MOST_SPECIES],
+    shares: Shares,
+    guide: Local<'c>,
 }
 
 /// A point of a fan with what it sends.
@@ -201,7 +198,7 @@ pub struct Certificate<'a, const L: usize> {
     scaled: Option<Columns<L>>,
     from: Place,
     sun: DVec3,
-    guide: Option<Guide>,
+    guide: Guide,
 }
 
 /// Radiance in a direction, without bias.
@@ -235,36 +232,27 @@ impl<'a, const L: usize> Certificate<'a, L> {
         let whole = solved.optics.species.iter().all(|one| one.whole.iter().all(|&whole| whole == 1.0));
         let shape = Shape::Sphere { radius_m: solved.grid.radius };
         let scaled = (!whole).then(|| Columns::new(&solved.optics.medium, shape, Tolerance::RENDER));
-        let mut certificate = Self { solved, truth: columns, scaled, from, sun, guide: None };
-        let norm = certificate.norm();
-        certificate.guide = Some(Guide::new(&certificate.sources(), from, sun, &norm));
-        certificate
+        // What counts is light as a share of what is seen: the table's mean over all directions.
+        const DIRECTIONS: u32 = 32;
+        let mut norm = [1e-30; L];
+        for i in 0..DIRECTIONS {
+            let radiance = solved.radiance(from, spiral(i, DIRECTIONS, [-1.0, 1.0]), sun, false);
+            for j in 0..L {
+                norm[j] += radiance[j] / f64::from(DIRECTIONS);
+            }
+        }
+        let guide = Guide::new(&Sources { solved, truth: &columns, scaled: scaled.as_ref() }, from, sun, &norm);
+        Self { solved, truth: columns, scaled, from, sun, guide }
     }
 
     fn sources(&self) -> Sources<'_, L> {
-        Sources { solved: self.solved, columns: self.scaled.as_ref().unwrap_or(&self.truth), truth: &self.truth }
+        Sources { solved: self.solved, truth: &self.truth, scaled: self.scaled.as_ref() }
     }
 
     /// Where the observer is, and the direction to the sun.
     #[must_use]
     pub fn observer(&self) -> (Place, DVec3) {
         (self.from, self.sun)
-    }
-
-    /// Mean of what the table says is seen.
-    fn norm(&self) -> [f64; L] {
-        const DIRECTIONS: u32 = 32;
-        let mut sum = [0.0; L];
-        for i in 0..DIRECTIONS {
-            let z = 1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(DIRECTIONS);
-            let (sin, cos) = (f64::from(i) * 2.399_963_229_728_653).sin_cos();
-            let level = (1.0 - z * z).sqrt();
-            let radiance = self.solved.radiance(self.from, DVec3::new(level * cos, level * sin, z), self.sun, false);
-            for j in 0..L {
-                sum[j] += radiance[j] / f64::from(DIRECTIONS);
-            }
-        }
-        sum.map(|mean| mean.max(1e-30))
     }
 
     /// Radiance out of the unit `direction`: the mean of `fans` independent fans, at least 2, and its variance.
@@ -287,7 +275,7 @@ impl<'a, const L: usize> Certificate<'a, L> {
 
     fn view(&self, direction: DVec3) -> Option<View<'_, L>> {
         let sources = self.sources();
-        let chord = sources.columns.chord(self.from, direction)?;
+        let chord = sources.columns().chord(self.from, direction)?;
         let norm = self.solved.radiance(self.from, direction, self.sun, false).map(|light| light.max(1e-30));
         let way = Way::new(&chord, self.solved.grid.radius);
         let counts = |light: [f64; L]| -> f64 { (0..L).map(|j| light[j].abs() / norm[j]).sum() };
@@ -295,13 +283,12 @@ impl<'a, const L: usize> Certificate<'a, L> {
         let masses: [f64; SIGHT] = std::array::from_fn(|i| {
             let (s, stretch) = way.at(&chord, (i as f64 + 0.5) / SIGHT as f64);
             let through = chord.point(s).depth.map(|depth| (-depth).exp());
-            let source =
-                sources.air(sources.place(&chord, self.from, direction, s), direction, self.sun, &mut harmonics);
+            let source = sources.air(chord.place(self.from, direction, s), direction, self.sun, &mut harmonics);
             counts(std::array::from_fn(|j| through[j] * source.tail[j] * stretch))
         });
         let mut ground = 0.0;
         if chord.ends_on_ground() && self.solved.optics.albedo.iter().any(|&albedo| albedo > 0.0) {
-            let source = sources.ground(sources.place(&chord, self.from, direction, chord.ends().1), self.sun);
+            let source = sources.ground(chord.foot(self.from, direction), self.sun);
             let total = chord.total();
             let seen = counts(std::array::from_fn(|j| (-total[j]).exp() * source.tail[j]));
             let air = masses.iter().sum::<f64>() / SIGHT as f64;
@@ -383,9 +370,8 @@ impl<const L: usize> Estimate<'_, L> {
                         sum[j] -= one.weight[j] * one.source.tail[j];
                     }
                     let whole: f64 = importance.iter().sum();
-                    let chance = (SURVIVAL * f64::from(fan.kept) * whole).min(1.0);
+                    let chance = (SURVIVAL * f64::from(fan.kept) * whole).clamp(CHANCES.0, CHANCES.1);
                     if depth < MOST
-                        && whole > 0.0
                         && random.uniform() < chance
                         && let Some(&(index, probability)) = systematic(&importance, 1, random.uniform()).first()
                     {
@@ -402,27 +388,27 @@ impl<const L: usize> Estimate<'_, L> {
 
     /// A vertex on the line of sight, and its weight.
     #[inline(always)]
-    fn first(&self, u: f64) -> (Vertex<L>, [f64; L]) {
+    fn first(&self, u: f64) -> (Vertex<'_, L>, [f64; L]) {
         let view = self.view;
         if u < view.ground {
             let total = view.chord.total();
-            let place = view.sources.place(&view.chord, self.certificate.from, view.direction, view.chord.ends().1);
             let weight = exp_minus(total).map(|through| through / view.ground);
-            return (self.vertex(Place { altitude_m: 0.0, ..place }, None), weight);
+            return (self.vertex(view.chord.foot(self.certificate.from, view.direction), None), weight);
         }
         let (v, density, _) = view.bins.sample((u - view.ground) / (1.0 - view.ground));
         let (s, stretch) = view.way.at(&view.chord, v);
         let factor = stretch / (density * (1.0 - view.ground));
         let weight = exp_minus(view.chord.point(s).depth).map(|through| through * factor);
-        let place = view.sources.place(&view.chord, self.certificate.from, view.direction, s);
+        let place = view.chord.place(self.certificate.from, view.direction, s);
         (self.vertex(place, Some(view.direction)), weight)
     }
 
     #[inline(always)]
-    fn vertex(&self, place: Place, direction: Option<DVec3>) -> Vertex<L> {
+    fn vertex(&self, place: Place, direction: Option<DVec3>) -> Vertex<'_, L> {
         let scattering =
             if direction.is_some() { self.view.sources.scattering(place.altitude_m) } else { [[0.0; L]; MOST_SPECIES] };
-        Vertex { place, direction, scattering }
+        let Certificate { solved, sun, guide, .. } = self.certificate;
+        Vertex { place, direction, scattering, shares: self.shares(&scattering), guide: guide.at(solved, place, *sun) }
     }
 
     /// What each point contributes, as a share of what is seen.
@@ -437,7 +423,7 @@ impl<const L: usize> Estimate<'_, L> {
 
     /// What a vertex sends of light from a direction, without the straight ray.
     #[inline(always)]
-    fn kernel(&self, vertex: &Vertex<L>, direction: DVec3) -> [f64; L] {
+    fn kernel(&self, vertex: &Vertex<'_, L>, direction: DVec3) -> [f64; L] {
         let optics = self.view.sources.optics();
         let Some(before) = vertex.direction else {
             let cosine = vertex.place.up.dot(direction).max(0.0) * FRAC_1_PI;
@@ -456,16 +442,14 @@ impl<const L: usize> Estimate<'_, L> {
 
     /// How directions are drawn.
     #[inline(always)]
-    fn shares(&self, vertex: &Vertex<L>) -> Shares {
+    fn shares(&self, scattering: &[[f64; L]; MOST_SPECIES]) -> Shares {
         let (mut all, mut peaked, mut straight) = (0.0, 0.0, 0.0);
-        if vertex.direction.is_some() {
-            for (one, scattering) in self.view.sources.optics().species.iter().zip(&vertex.scattering) {
-                for j in 0..L {
-                    let whole = scattering[j] * one.whole[j];
-                    all += whole;
-                    peaked += if one.is_molecular() { 0.0 } else { whole };
-                    straight += whole - scattering[j];
-                }
+        for (one, scattering) in self.view.sources.optics().species.iter().zip(scattering) {
+            for j in 0..L {
+                let whole = scattering[j] * one.whole[j];
+                all += whole;
+                peaked += if one.is_molecular() { 0.0 } else { whole };
+                straight += whole - scattering[j];
             }
         }
         if all <= 0.0 || peaked <= 0.0 {
@@ -478,7 +462,7 @@ impl<const L: usize> Estimate<'_, L> {
 
     /// The mean over wavelengths and peaked species of the phase function.
     #[inline(always)]
-    fn peak(&self, vertex: &Vertex<L>, cosine: f64) -> f64 {
+    fn peak(&self, vertex: &Vertex<'_, L>, cosine: f64) -> f64 {
         let (mut sum, mut all) = (0.0, 0.0);
         for (one, scattering) in self.view.sources.optics().species.iter().zip(&vertex.scattering) {
             if !one.is_molecular() {
@@ -493,7 +477,7 @@ impl<const L: usize> Estimate<'_, L> {
 
     /// Draws a direction about an axis with the density [`Estimate::peak`].
     #[inline(always)]
-    fn about(&self, vertex: &Vertex<L>, axis: DVec3, u: f64, turn: f64) -> DVec3 {
+    fn about(&self, vertex: &Vertex<'_, L>, axis: DVec3, u: f64, turn: f64) -> DVec3 {
         let species = &self.view.sources.optics().species;
         let weight =
             |i: usize| -> f64 { if species[i].is_molecular() { 0.0 } else { vertex.scattering[i].iter().sum() } };
@@ -520,22 +504,20 @@ impl<const L: usize> Estimate<'_, L> {
     #[inline(always)]
     fn child(
         &self,
-        vertex: &Vertex<L>,
+        vertex: &Vertex<'_, L>,
         [u, turn, distance]: [f64; 3],
         weight: &[f64; L],
         reached: &mut Vec<Reached<L>>,
         harmonics: &mut Vec<f64>,
     ) {
         let (sources, sun) = (&self.view.sources, self.certificate.sun);
-        let Some(guide) = &self.certificate.guide else { return };
-        let local: Local<'_> = guide.at(sources.solved, vertex.place, sun);
-        let shares = self.shares(vertex);
+        let Vertex { shares, guide, .. } = vertex;
         let ahead = vertex.direction.unwrap_or(vertex.place.up);
         let guided = 1.0 - shares.straight - shares.forward - shares.sunward;
         let (direction, found, factors);
         if u < shares.straight {
             direction = ahead;
-            found = local.find(direction);
+            found = guide.find(direction);
             let mut straight = [0.0; L];
             for (one, scattering) in sources.optics().species.iter().zip(&vertex.scattering) {
                 for j in 0..L {
@@ -547,12 +529,12 @@ impl<const L: usize> Estimate<'_, L> {
             let u = u - shares.straight;
             (direction, found) = if u < shares.forward {
                 let direction = self.about(vertex, ahead, u / shares.forward, turn);
-                (direction, local.find(direction))
+                (direction, guide.find(direction))
             } else if u < shares.forward + shares.sunward {
                 let direction = self.about(vertex, sun, (u - shares.forward) / shares.sunward, turn);
-                (direction, local.find(direction))
+                (direction, guide.find(direction))
             } else {
-                local.sample([((u - shares.forward - shares.sunward) / guided).clamp(0.0, 1.0 - 1e-12), turn])
+                guide.sample([((u - shares.forward - shares.sunward) / guided).clamp(0.0, 1.0 - 1e-12), turn])
             };
             let mut density = guided * found.density;
             if shares.forward > 0.0 {
@@ -568,33 +550,34 @@ impl<const L: usize> Estimate<'_, L> {
         if weight == [0.0; L] {
             return;
         }
-        let Some(chord) = sources.columns.chord(vertex.place, direction) else { return };
+        let Some(chord) = sources.columns().chord(vertex.place, direction) else { return };
         if chord.ends_on_ground() && sources.optics().albedo.iter().any(|&albedo| albedo > 0.0) {
-            let mut place = sources.place(&chord, vertex.place, direction, chord.ends().1);
-            place.altitude_m = 0.0;
+            let place = chord.foot(vertex.place, direction);
             let through = exp_minus(chord.total());
             let weight = std::array::from_fn(|j| weight[j] * through[j]);
             reached.push(Reached { place, direction: None, weight, source: sources.ground(place, sun) });
         }
         let way = Way::new(&chord, sources.solved.grid.radius);
-        let (v, density, _) = local.distances(found).sample(distance);
+        let (v, density, _) = guide.distances(found).sample(distance);
         let (s, stretch) = way.at(&chord, v);
         let through = exp_minus(chord.point(s).depth);
         let weight = std::array::from_fn(|j| weight[j] * through[j] * stretch / density);
-        let place = sources.place(&chord, vertex.place, direction, s);
+        let place = chord.place(vertex.place, direction, s);
         let source = sources.air(place, direction, sun, harmonics);
         reached.push(Reached { place, direction: Some(direction), weight, source });
     }
 }
 
-/// Chooses `count` indices with probabilities in proportion to the importance, a share of them even, by equal steps from a random offset.
+/// Chooses `count` indices with probabilities in proportion to the importance, a share of them even, by equal steps from a random
+/// offset; all evenly where there is none. None of nothing.
 fn systematic(importance: &[f64], count: u32, offset: f64) -> Vec<(usize, f64)> {
-    let whole: f64 = importance.iter().sum();
-    if whole <= 0.0 {
+    if importance.is_empty() {
         return Vec::new();
     }
-    let even = DEFENSIVE / importance.len() as f64;
-    let probability = |i: usize| (1.0 - DEFENSIVE) * importance[i] / whole + even;
+    let whole: f64 = importance.iter().sum();
+    let share = if whole > 0.0 { DEFENSIVE } else { 1.0 };
+    let even = share / importance.len() as f64;
+    let probability = |i: usize| if whole > 0.0 { (1.0 - share) * importance[i] / whole + even } else { even };
     let mut chosen = Vec::with_capacity(count as usize);
     let (mut below, mut i) = (0.0, 0);
     for k in 0..count {

@@ -163,6 +163,7 @@ impl Frame {
 }
 
 /// What a [`Guide`] says at one place.
+#[derive(Clone, Copy)]
 pub(super) struct Local<'a> {
     entry: &'a Entry,
     frame: Frame,
@@ -212,19 +213,18 @@ fn entry<const L: usize>(sources: &Sources<'_, L>, place: Place, sun: DVec3, nor
         // The middle of the bin by its measure.
         let (direction, width) = frame.direction(bin, [0.5, 0.25]);
         let mut along = [0.0; DISTANCES];
-        let Some(chord) = sources.columns.chord(place, direction) else { return Bins::new(along) };
+        let Some(chord) = sources.columns().chord(place, direction) else { return Bins::new(along) };
         let way = Way::new(&chord, sources.solved.grid.radius);
         for (i, mass) in along.iter_mut().enumerate() {
             let (s, stretch) = way.at(&chord, (i as f64 + 0.5) / DISTANCES as f64);
             let through = chord.point(s).depth.map(|depth| (-depth).exp());
-            let source = sources.air(sources.place(&chord, place, direction, s), direction, sun, &mut harmonics);
+            let source = sources.air(chord.place(place, direction, s), direction, sun, &mut harmonics);
             let light = std::array::from_fn(|j| through[j] * source.total[j] * stretch);
             *mass = counts(&light);
         }
         let mut mass = along.iter().sum::<f64>() / DISTANCES as f64;
         if chord.ends_on_ground() {
-            let foot = sources.place(&chord, place, direction, chord.ends().1);
-            let source = sources.ground(foot, sun);
+            let source = sources.ground(chord.foot(place, direction), sun);
             let total = chord.total();
             mass += counts(&std::array::from_fn(|j| (-total[j]).exp() * source.total[j]));
         }

@@ -34,6 +34,7 @@ pub use grid::Resolution;
 
 use crate::atmosphere::{Columns, Medium, MediumError, Tolerance};
 use crate::geometry::{Place, Shape};
+use crate::sampling::spiral;
 use crate::vectors::vectorised;
 use first::{Scattering, Sunlight};
 use glam::DVec3;
@@ -251,11 +252,7 @@ impl<const L: usize> Solved<L> {
         let least = (top / (self.grid.radius + from.altitude_m)).min(1.0);
         let highest = if least < 1.0 { -((1.0 - least) * (1.0 + least)).sqrt() } else { 1.0 };
         for i in 0..DIRECTIONS {
-            // Even in solid angle, by steps of the golden angle.
-            let z = highest - (highest + 1.0) * (f64::from(i) + 0.5) / f64::from(DIRECTIONS);
-            let (sin, cos) = (f64::from(i) * 2.399_963_229_728_653).sin_cos();
-            let level = (1.0 - z * z).sqrt();
-            let direction = DVec3::new(level * cos, level * sin, z);
+            let direction = spiral(i, DIRECTIONS, [-1.0, highest]);
             let [a, b] = [self, other].map(|solved| solved.radiance(from, direction, sun, false));
             for j in 0..L {
                 squares[j] += (a[j] - b[j]).powi(2) / f64::from(DIRECTIONS);

@@ -280,6 +280,25 @@ fn certified_radiance_does_not_depend_on_the_table() {
 }
 
 #[test]
+fn an_empty_table_is_certified_too() {
+    // Without a table paths end by roulette alone: what it leaves out, light of three orders and more, is found nevertheless.
+    let (medium, albedo) = (clear(), [0.3; 2]);
+    let sound = Solved::new(&medium, EARTH, albedo, &TEST).expect("round");
+    let mut empty = sound.again(&TEST, None).expect("solved");
+    empty.field.moments.iter_mut().chain(&mut empty.field.ground).for_each(|moments| *moments = [0.0; 2]);
+    let (from, direction, sun) = (Place::above(2.0), towards(75.0, 120.0), towards(50.0, 0.0));
+    let right = sound.radiance(from, direction, sun, false);
+    let certificate = Certificate::new(&empty, columns(&medium, EARTH), from, sun);
+    let found = certificate.radiance(direction, Fan { first: 128, kept: 8, further: 64 }, 1024, 1, 1);
+    // 4.5 standard errors, and 0.3 % of the sound table; paths that end with the table would lack 7 and 1 %.
+    for (j, allowed) in [(0, 0.06), (1, 0.0095)] {
+        let (off, error) = (found.mean[j] / right[j] - 1.0, found.variance[j].sqrt() / right[j]);
+        assert!(off.abs() < 4.5 * error + 3e-3, "{j}: {off:e} +- {error:e}");
+        assert!(4.5 * error + 3e-3 < allowed, "an error of {error:e} tests nothing");
+    }
+}
+
+#[test]
 fn certificates_state_their_errors() {
     // 200 certificates of 8 fans: their spread is what they state, within 4 standard errors of a spread.
     let medium = mixed();

@@ -5,7 +5,7 @@ use super::grid::Between;
 use super::harmonics::MOST_DEGREE;
 use super::line::{Crossing, MOST_SPECIES, Rule, Spread, Stencil, Take, crossings, quadrature};
 use crate::atmosphere::{Chord, Columns};
-use crate::geometry::{Place, Shape};
+use crate::geometry::Place;
 use crate::light::SunDisc;
 use crate::vectors::{exp_minus, vectorised};
 use glam::DVec3;
@@ -101,8 +101,7 @@ impl<const L: usize> Solved<L> {
         }
         if chord.ends_on_ground() {
             let through = exp_minus(chord.total());
-            let mut foot = sight.place(end);
-            foot.altitude_m = 0.0;
+            let foot = chord.foot(from, direction);
             let mut light = if single { [0.0; L] } else { self.diffuse_irradiance(foot, sun) };
             let cosine = foot.up.dot(sun);
             if cosine > 0.0
@@ -219,7 +218,8 @@ impl<const L: usize> Take<L> for Taker<'_, L> {
         if let Some(spread) = &mut self.spread {
             spread.take(s, scattered);
         }
-        let Some(through) = self.sight.sunlight.transmittance(self.sight.place(s), self.sight.sun) else {
+        let Sight { chord, from, direction, sun, sunlight, .. } = *self.sight;
+        let Some(through) = sunlight.transmittance(chord.place(from, direction, s), sun) else {
             return;
         };
         for (phase, scattered) in self.phases.iter().zip(scattered) {
@@ -244,14 +244,6 @@ struct Sight<'a, const L: usize> {
 }
 
 impl<const L: usize> Sight<'_, L> {
-    #[inline(always)]
-    fn place(&self, s: f64) -> Place {
-        let shape = Shape::Sphere { radius_m: self.solved.grid.radius };
-        let mut place = self.from.advance(shape, self.direction, self.chord.travelled(s));
-        place.altitude_m = place.altitude_m.clamp(0.0, self.solved.optics.medium.top_m());
-        place
-    }
-
     /// Where the line passes the surface of the planet's shadow, a cylinder about the axis to the sun:
     /// |p|^2 - (p . sun)^2 = R^2, a quadratic in the distance from the perigee. Infinite where it does not.
     fn shadow_edges(&self) -> [f64; 2] {
