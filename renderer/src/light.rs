@@ -63,6 +63,11 @@ impl<const L: usize> SunDisc<L> {
         Ok(Self::darkened(direction, angular_radius, profile))
     }
 
+    /// Turns the disc to another centre, a unit vector.
+    pub fn turn(&mut self, direction: DVec3) {
+        self.direction = direction;
+    }
+
     /// A parallel beam from the unit vector `direction`.
     #[must_use]
     pub fn beam(direction: DVec3) -> Self {

@@ -68,6 +68,10 @@ pub(super) struct RenderArgs {
     /// confidence whether the table's rms error is below E, 1e-5 to 1 [default without E: 0.1%]
     #[arg(long, value_name = "E", value_parser = share, num_args = 0..=1, default_missing_value = "0.1%", require_equals = true, help_heading = "Sampling")]
     pub certify: Option<f64>,
+    /// Relative error (rms) that solved tables are to have, 1e-5 to 1: finer ones are solved until they state it, or there is none
+    /// finer; 0.2% takes some three times as long [default: 1%]
+    #[arg(long, value_name = "E", value_parser = share, help_heading = "Sampling")]
+    pub table_error: Option<f64>,
     /// Wavelengths: how many from 380 to 780 nm, 1 to 1000, or a list in nm, 300 to 1000,
     /// increasing (450,550,650; a single one as 550.0) [default: 16]
     #[arg(long, value_name = "N|LIST", help_heading = "Sampling")]
@@ -286,7 +290,7 @@ pub(super) struct StudyArgs {
     /// What to study
     #[arg(value_name = "WHAT")]
     pub what: StudyName,
-    /// CSV to write [default: plots/airlight-WHAT.csv]
+    /// CSV to write, or PNG [default: plots/airlight-WHAT.csv, or .png]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Folder with the tables
@@ -308,6 +312,8 @@ pub(super) enum StudyName {
     SolvedSuns,
     /// Solved tables: error against the time to solve, for grids, moments and orders
     SolvedGrids,
+    /// Skies from one solution, the sun from 60 to -12 degrees, with the time of each: a strip of fisheyes (PNG)
+    Strip,
 }
 
 impl StudyName {
@@ -316,6 +322,7 @@ impl StudyName {
             Self::Columns => "columns",
             Self::SolvedSuns => "solved-suns",
             Self::SolvedGrids => "solved-grids",
+            Self::Strip => "strip",
         }
     }
 }
@@ -529,6 +536,7 @@ impl RenderArgs {
             spp: self.spp.or(base.spp.filter(|_| !effort)),
             block: self.block.or(base.block).or(timed),
             error: self.error.or(base.error.filter(|_| !effort)),
+            table_error: self.table_error.unwrap_or(base.table_error),
         };
         scene.validate()?;
         Ok(scene)

@@ -7,18 +7,31 @@ use super::{EncodeError, Picture, tone};
 /// # Errors
 /// [`EncodeError::Png`] if the library refuses.
 pub fn encode(picture: &Picture<'_>, exposure_ev: f64) -> Result<Vec<u8>, EncodeError> {
+    file(picture.film.size(), &pixels(picture, exposure_ev))
+}
+
+/// Its pixels, row by row, three bytes each.
+#[must_use]
+pub fn pixels(picture: &Picture<'_>, exposure_ev: f64) -> Vec<u8> {
     let (width, height) = picture.film.size();
     let white = tone::white_cd_m2(exposure_ev);
-    let pixels: Vec<u8> = (0..width as usize * height as usize)
+    (0..width as usize * height as usize)
         .flat_map(|pixel| tone::display(picture.rgb(pixel), white).map(tone::srgb_byte))
-        .collect();
+        .collect()
+}
+
+/// A PNG file of eight-bit sRGB pixels, row by row.
+///
+/// # Errors
+/// [`EncodeError::Png`] if the library refuses.
+pub fn file((width, height): (u32, u32), pixels: &[u8]) -> Result<Vec<u8>, EncodeError> {
     let mut bytes = Vec::new();
     let mut encoder = ::png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(::png::ColorType::Rgb);
     encoder.set_depth(::png::BitDepth::Eight);
     encoder.set_source_srgb(::png::SrgbRenderingIntent::Perceptual);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&pixels)?;
+    writer.write_image_data(pixels)?;
     writer.finish()?;
     Ok(bytes)
 }

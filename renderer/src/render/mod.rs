@@ -30,7 +30,7 @@ pub use summary::Summary;
 use crate::atmosphere::AirError;
 use crate::camera::Camera;
 use crate::data::DataError;
-use crate::film::{Errors, Film, Row};
+use crate::film::{EncodeError, Errors, Film, Row};
 use crate::scene::{MAX_SPP, Scene, SceneError};
 use crate::spectrum::linear_srgb;
 use crate::transport::SolveError;
@@ -57,6 +57,9 @@ pub enum RenderError {
     /// The method does not cover the scene.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// A picture cannot be encoded.
+    #[error(transparent)]
+    Encode(#[from] EncodeError),
     /// The threads cannot be started.
     #[error("the threads cannot be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),

@@ -9,7 +9,7 @@ use crate::light::{SunDisc, solar_angular_radius};
 use crate::sampling::Sampler;
 use crate::scene::{Scene, SceneError};
 use crate::spectrum::{Colour, Packet, Wavelengths};
-use crate::transport::{self, Certificate, Estimator, FINER, Method, Problem, Resolution, SolveError, Solved};
+use crate::transport::{self, Certificate, Estimator, Method, Panorama, Problem, SolveError, Tables};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::ops::Range;
@@ -80,8 +80,19 @@ impl Sky {
         let air = air.with_haze(haze);
         let sun_direction = scene.sun_direction();
         let place = Place::above(scene.altitude_km * KM);
-        let parts =
-            Parts { wavelengths, albedo: &albedo, air: &air, data, method: scene.method, place, sun_direction, kept };
+        let wanted = &looked_at(scene);
+        let parts = Parts {
+            wavelengths,
+            albedo: &albedo,
+            air: &air,
+            data,
+            method: scene.method,
+            place,
+            sun_direction,
+            wanted,
+            table_error: scene.table_error,
+            kept,
+        };
         let carriers = wavelengths.packets().into_iter().map(|packet| {
             let carrier = match packet.lanes {
                 1 => parts.carry::<1>(&packet),
@@ -102,6 +113,20 @@ impl Sky {
             sun_direction,
             identities,
         })
+    }
+
+    /// Turns to the sun, the observer and the camera of another scene that has the same air and ground; solved tables stay, whatever
+    /// error that scene asks for.
+    ///
+    /// # Errors
+    /// [`SolveError::Inexact`] if the tables are too far off there.
+    pub fn turn(&mut self, scene: &Scene) -> Result<(), RenderError> {
+        let wanted = looked_at(scene);
+        (self.place, self.sun_direction) = (Place::above(scene.altitude_km * KM), scene.sun_direction());
+        for (_, carrier) in &mut self.carriers {
+            carrier.turn(self.place, self.sun_direction, &wanted)?;
+        }
+        Ok(())
     }
 
     /// One unbiased estimate of the radiance factors (sr^-1) that arrive at the observer out of
@@ -247,6 +272,25 @@ fn check_wavelengths(scene: &Scene, data: &Data) -> Result<(), TableError> {
     reach(Kind::Sun, &data.sun.irradiance_w_m2_nm)
 }
 
+/// Pictures of fewer pixels than this are looked at direction by direction, and of larger ones about so many are asked where they look.
+const PANORAMIC: usize = 4096;
+
+/// Directions all over a picture; none of a small one.
+fn looked_at(scene: &Scene) -> Vec<DVec3> {
+    let (camera, (width, height)) = (scene.camera(), scene.size());
+    let pixels = width as usize * height as usize;
+    if pixels < PANORAMIC {
+        return Vec::new();
+    }
+    let step = ((pixels / PANORAMIC) as f64).sqrt().max(1.0) as usize;
+    let rows = (0..height).step_by(step).flat_map(|y| (0..width).step_by(step).map(move |x| (x, y)));
+    rows.filter_map(|(x, y)| camera.direction(f64::from(x) + 0.5, f64::from(y) + 0.5)).collect()
+}
+
+/// Error of a panorama: a share of what its table states, within limits.
+const SHARE: f64 = 0.1;
+const SHOWN: (f64, f64) = (2e-4, 2e-3);
+
 /// Error that a solved table may state at most.
 const MOST_ERROR: f64 = 0.1;
 
@@ -259,6 +303,8 @@ struct Parts<'a> {
     method: Method,
     place: Place,
     sun_direction: DVec3,
+    wanted: &'a [DVec3],
+    table_error: f64,
     kept: Option<&'a Path>,
 }
 
@@ -269,26 +315,35 @@ impl Parts<'_> {
         let shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
         let medium = self.air.medium(&nm)?;
         let albedo = std::array::from_fn(|lane| self.albedo[(packet.range.start + lane).min(last)]);
+        let sun = SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius())?;
         let means = match self.method.estimator() {
             None => {
-                let solved = Solved::kept(&medium, shape, albedo, &Resolution::RENDER, self.kept)?;
-                let coarse = solved.again(&Resolution::COARSE, self.kept)?;
-                let error = FINER * solved.difference(&coarse, self.place, self.sun_direction);
-                if error.is_nan() || error > MOST_ERROR {
-                    return Err(SolveError::Inexact(error).into());
-                }
-                Means::Solved(solved, error)
+                let (view, sky) = ((self.place, self.sun_direction), (&medium, shape, albedo));
+                let tables = Tables::within(self.table_error, view, sky, self.kept)?;
+                let (error, seen) = seen(&tables, self.place, &sun, self.wanted)?;
+                Means::Solved { tables, error, seen }
             }
             Some(estimator) => Means::Estimated(estimator, Columns::new(&medium, shape, Tolerance::RENDER)),
         };
-        Ok(Box::new(Lanes {
-            means,
-            shape,
-            medium,
-            albedo,
-            sun: SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius())?,
-        }))
+        Ok(Box::new(Lanes { means, shape, medium, albedo, sun }))
     }
+}
+
+/// The error of tables for an observer and a sun, and what is seen with each of the suns that stand for the disc.
+fn seen<const L: usize>(
+    tables: &Tables<L>,
+    place: Place,
+    sun: &SunDisc<L>,
+    wanted: &[DVec3],
+) -> Result<(f64, Vec<Panorama<L>>), SolveError> {
+    let error = tables.error(place, sun.direction());
+    if error.is_nan() || error > MOST_ERROR {
+        return Err(SolveError::Inexact(error));
+    }
+    let (least, most) = SHOWN;
+    let shown = (SHARE * error).clamp(least, most);
+    let suns = tables.solved.suns(place, sun).into_iter();
+    Ok((error, suns.map(|sun| Panorama::new(&tables.solved, place, sun, shown, wanted)).collect()))
 }
 
 /// A packet of wavelengths, whatever the number of its lanes; slices are as long as
@@ -298,6 +353,8 @@ trait Carrier: Debug + Send + Sync {
     fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool;
     fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]);
     fn table_error(&self) -> Option<f64>;
+    /// Turns to another observer and sun.
+    fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError>;
     /// A certificate of the solved table for its observer, of so many wavelengths.
     fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>>;
 }
@@ -306,8 +363,12 @@ trait Carrier: Debug + Send + Sync {
 #[derive(Debug)]
 enum Means<const L: usize> {
     Estimated(Estimator, Columns<L>),
-    /// With the error for this observer and this sun.
-    Solved(Solved<L>, f64),
+    /// With the error for this observer and this sun, and what is seen with each of the suns that stand for the disc.
+    Solved {
+        tables: Tables<L>,
+        error: f64,
+        seen: Vec<Panorama<L>>,
+    },
 }
 
 #[derive(Debug)]
@@ -323,9 +384,14 @@ impl<const L: usize> Carrier for Lanes<L> {
     fn radiance(&self, from: Place, direction: DVec3, sampler: &mut Sampler, factors: &mut [f64]) {
         let (estimator, columns) = match &self.means {
             Means::Estimated(estimator, columns) => (*estimator, columns),
-            Means::Solved(solved, _) => {
-                let radiance = solved.radiance_of_disc(from, direction, &self.sun);
-                factors.copy_from_slice(&radiance[..factors.len()]);
+            Means::Solved { tables, seen, .. } => {
+                factors.fill(0.0);
+                for sun in seen {
+                    let radiance = sun.radiance(&tables.solved, direction);
+                    for (factor, radiance) in factors.iter_mut().zip(radiance) {
+                        *factor += radiance / seen.len() as f64;
+                    }
+                }
                 return;
             }
         };
@@ -344,16 +410,24 @@ impl<const L: usize> Carrier for Lanes<L> {
 
     fn table_error(&self) -> Option<f64> {
         match &self.means {
-            Means::Solved(_, error) => Some(*error),
+            Means::Solved { error, .. } => Some(*error),
             Means::Estimated(..) => None,
         }
     }
 
     fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>> {
-        let Means::Solved(solved, _) = &self.means else { return None };
+        let Means::Solved { tables: Tables { solved, .. }, .. } = &self.means else { return None };
         let columns = Columns::new(&self.medium, self.shape, Tolerance::RENDER);
         let certificate = Certificate::new(solved, columns, from, self.sun.direction());
         Some(Box::new(certify::Packet { solved, certificate, count }))
+    }
+
+    fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError> {
+        self.sun.turn(sun);
+        if let Means::Solved { tables, error, seen: panoramas } = &mut self.means {
+            (*error, *panoramas) = seen(tables, from, &self.sun, wanted)?;
+        }
+        Ok(())
     }
 
     fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool {

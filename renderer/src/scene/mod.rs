@@ -111,6 +111,8 @@ pub struct Scene {
     pub block: Option<u32>,
     /// Relative error at which to stop, 1e-5 to 1.
     pub error: Option<f64>,
+    /// Relative error that a solved table is to have, 1e-5 to 1: finer ones are solved until they state it or there is none finer.
+    pub table_error: f64,
 }
 
 /// What the ground reflects: Lambertian.
@@ -157,6 +159,7 @@ impl Default for Scene {
             spp: None,
             block: None,
             error: None,
+            table_error: 0.01,
         }
     }
 }

@@ -98,6 +98,7 @@ impl Scene {
         optional("exposure", self.exposure_ev, -30.0, 30.0, " EV")?;
         optional("spp", self.spp.map(f64::from), 1.0, f64::from(MAX_SPP), "")?;
         optional("error", self.error, 1e-5, 1.0, "")?;
+        range("table error", self.table_error, 1e-5, 1.0, "")?;
         optional("block", self.block.map(f64::from), 1.0, f64::from(MAX_BLOCK), "")?;
         match self.block.filter(|block| !block.is_power_of_two()) {
             Some(block) => Err(SceneError::Refused(format!("block is {block}; a power of two is needed"))),

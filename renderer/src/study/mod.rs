@@ -2,6 +2,7 @@
 
 pub mod columns;
 pub mod solved;
+pub mod strip;
 
 use std::fmt::Write;
 

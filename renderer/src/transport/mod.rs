@@ -23,7 +23,7 @@ use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::sampling::Sampler;
 use glam::DVec3;
-pub use solved::{Certificate, Certified, FINER, Fan, Resolution, SolveError, Solved};
+pub use solved::{Certificate, Certified, FINER, Fan, Panorama, Resolution, SolveError, Solved, Tables};
 
 use serde::{Deserialize, Serialize};
 

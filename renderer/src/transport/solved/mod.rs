@@ -14,6 +14,7 @@
 //! What is seen is integrated along the line of sight: sunlight scattered once with the phase functions themselves, and the
 //! table's sources. Radiance is never interpolated.
 
+mod aureole;
 mod certify;
 mod file;
 mod first;
@@ -23,6 +24,7 @@ mod harmonics;
 mod line;
 mod mix;
 mod orders;
+mod panorama;
 mod rays;
 mod species;
 #[cfg(test)]
@@ -31,11 +33,13 @@ mod view;
 
 pub use certify::{Certificate, Certified, Fan};
 pub use grid::Resolution;
+pub use panorama::Panorama;
 
 use crate::atmosphere::{Columns, Medium, MediumError, Tolerance};
 use crate::geometry::{Place, Shape};
 use crate::sampling::spiral;
 use crate::vectors::vectorised;
+use aureole::Aureole;
 use first::{Scattering, Sunlight};
 use glam::DVec3;
 use grid::Grid;
@@ -89,6 +93,7 @@ struct Optics<const L: usize> {
     species: Vec<Species<L>>,
     medium: Medium<L>,
     columns: Columns<L>,
+    aureole: Aureole<L>,
     albedo: [f64; L],
 }
 
@@ -137,10 +142,55 @@ impl Resolution {
     pub const RENDER: Self = Self { levels: 22, suns: 40, zeniths: [7, 4, 5], parts: 8, degree: 14, change: 5e-4 };
 
     /// What reference cases take: also the twilight limb seen from space.
-    pub const FINE: Self = Self { levels: 32, suns: 48, zeniths: [10, 6, 8], parts: 8, degree: 16, change: 5e-4 };
+    pub const FINE: Self = Self { levels: 32, suns: 48, zeniths: [10, 6, 8], parts: 8, degree: 20, change: 2e-4 };
 
     /// A coarser one, whose distance from [`Resolution::RENDER`] tells how far that is from the truth.
     pub const COARSE: Self = Self { levels: 16, suns: 33, zeniths: [5, 3, 4], parts: 4, degree: 14, change: 5e-4 };
+}
+
+/// Solved tables of an atmosphere, as fine as an error asks for.
+#[derive(Debug)]
+pub struct Tables<const L: usize> {
+    /// The finest.
+    pub solved: Solved<L>,
+    /// The next coarser, from which the error of the finest follows.
+    coarser: Solved<L>,
+    /// What the two do not show.
+    hidden: f64,
+}
+
+/// What [`Resolution::RENDER`] and the one below it leave out alike where phase functions have peaks: moments beyond the last, mostly at the
+/// horizon. By certificates (`airlight study solved-suns`).
+const HIDDEN: f64 = 3e-3;
+
+impl<const L: usize> Tables<L> {
+    /// Solves on finer grids until the table states at most this error for an observer and a sun, or there is none finer. `kept` as
+    /// in [`Solved::kept`].
+    ///
+    /// # Errors
+    /// As [`Solved::kept`].
+    pub fn within(
+        error: f64,
+        (from, sun): (Place, DVec3),
+        (medium, shape, albedo): (&Medium<L>, Shape, [f64; L]),
+        kept: Option<&Path>,
+    ) -> Result<Self, SolveError> {
+        let solved = Solved::kept(medium, shape, albedo, &Resolution::RENDER, kept)?;
+        let coarser = solved.again(&Resolution::COARSE, kept)?;
+        let hidden = if solved.optics.moments.degree() > 2 { HIDDEN } else { 0.0 };
+        let usual = Self { solved, coarser, hidden };
+        if usual.error(from, sun) <= error {
+            return Ok(usual);
+        }
+        let solved = Solved::kept(medium, shape, albedo, &Resolution::FINE, kept)?;
+        Ok(Self { solved, coarser: usual.solved, hidden: 0.0 })
+    }
+
+    /// What the table states: how far it is off at an observer with the sun in that unit direction.
+    #[must_use]
+    pub fn error(&self, from: Place, sun: DVec3) -> f64 {
+        (FINER * self.solved.difference(&self.coarser, from, sun)).hypot(self.hidden)
+    }
 }
 
 /// What a solution is off, of what it differs from one on the next coarser grid: that is off by two to four times as much.
@@ -188,7 +238,8 @@ impl<const L: usize> Solved<L> {
         let degree = species::degree_of(medium, resolution.degree);
         let (species, medium) = species::scaled(medium, degree)?;
         let columns = Columns::new(&medium, shape, Tolerance::SOLVE);
-        let optics = Optics { moments: Moments::new(degree), species, medium, columns, albedo };
+        let aureole = Aureole::new(&species, &medium, shape)?;
+        let optics = Optics { moments: Moments::new(degree), species, medium, columns, aureole, albedo };
         Self::with(Arc::new(optics), radius_m, resolution, kept)
     }
 
@@ -201,7 +252,8 @@ impl<const L: usize> Solved<L> {
         let (medium, columns) = (medium.clone(), Columns::new(medium, shape, Tolerance::RENDER));
         let grid = Grid::new(&medium, radius_m, &Resolution::FINE);
         let species = species::whole(&medium);
-        let optics = Optics { moments: Moments::new(2), species, medium, columns, albedo };
+        let (moments, aureole) = (Moments::new(2), Aureole::none());
+        let optics = Optics { moments, species, medium, columns, aureole, albedo };
         let field = Field { moments: Vec::new(), ground: Vec::new() };
         Ok(Self { optics: Arc::new(optics), grid, field, orders: 1, residual: 0.0 })
     }

@@ -30,6 +30,26 @@ impl<const L: usize> Species<L> {
     pub(super) fn is_molecular(&self) -> bool {
         matches!(self.phase, Phase::Rayleigh { .. })
     }
+
+    /// f, the share of scattered light that goes straight on.
+    pub(super) fn straight(&self) -> [f64; L] {
+        self.whole.map(|whole| 1.0 - 1.0 / whole)
+    }
+
+    /// What the coefficients hold of the phase function: sum (1 - f) b_l P_l(c), in sr^-1.
+    #[inline(always)]
+    pub(super) fn kept(&self, cosine: f64) -> [f64; L] {
+        let mut sum = [0.0; L];
+        let (mut before, mut legendre) = (0.0, 1.0);
+        for (l, coefficients) in (0..).zip(&self.coefficients) {
+            for j in 0..L {
+                sum[j] += legendre * coefficients[j];
+            }
+            let n = f64::from(l);
+            (before, legendre) = (legendre, ((2.0 * n + 1.0) * cosine * legendre - n * before) / (n + 1.0));
+        }
+        std::array::from_fn(|j| sum[j] / self.whole[j])
+    }
 }
 
 /// Degrees that the components need: 2 for molecules alone, else `degree`.
@@ -80,7 +100,7 @@ pub(super) fn scaled<const L: usize>(
 }
 
 /// chi_l = 2 pi int P(c) P_l(c) dc for l = 0 ..= `last`.
-fn moments<const L: usize>(phase: &Phase<L>, last: usize) -> Vec<[f64; L]> {
+pub(super) fn moments<const L: usize>(phase: &Phase<L>, last: usize) -> Vec<[f64; L]> {
     match phase {
         Phase::Rayleigh { gamma } => {
             let mut chi = vec![[0.0; L]; last + 1];

@@ -1,9 +1,10 @@
 //! What is seen: sunlight scattered once and the table's sources, integrated along the line of sight.
 
-use super::Solved;
+use super::aureole::Through;
 use super::grid::Between;
 use super::harmonics::MOST_DEGREE;
 use super::line::{Crossing, MOST_SPECIES, Rule, Spread, Stencil, Take, crossings, quadrature};
+use super::{Optics, Solved};
 use crate::atmosphere::{Chord, Columns};
 use crate::geometry::Place;
 use crate::light::SunDisc;
@@ -33,27 +34,50 @@ impl<const L: usize> Solved<L> {
         vectorised(Look { solved: self, from, direction, sun, single: true, sunlight })
     }
 
-    /// As [`Solved::radiance`], of all light, with the sun as a disc. Where it is low its upper and lower parts lie differently
-    /// deep in twilight: two suns as far above and below its centre as the disc spreads give the mean to fourth order.
+    /// Suns, as parallel beams, whose mean stands for the disc. Where it is low its upper and lower parts lie differently deep in
+    /// twilight: two suns as far above and below its centre as the disc spreads give the mean to fourth order.
     #[must_use]
-    pub fn radiance_of_disc(&self, from: Place, direction: DVec3, sun: &SunDisc<L>) -> [f64; L] {
+    pub fn suns(&self, from: Place, sun: &SunDisc<L>) -> Vec<DVec3> {
         let centre = sun.direction();
         let high = from.altitude_m < DEEP * self.optics.medium.top_m() && centre.dot(from.up) > HIGH_SUN;
         let across = centre.cross(from.up).try_normalize();
-        let (false, Some(across)) = (high, across) else {
-            return self.radiance(from, direction, centre, false);
-        };
+        let (false, Some(across)) = (high, across) else { return vec![centre] };
         let (sin, cos) = sun.spread().sqrt().sin_cos();
         let upwards = across.cross(centre) * sin;
-        let [a, b] = [upwards, -upwards].map(|off| self.radiance(from, direction, centre * cos + off, false));
-        std::array::from_fn(|j| 0.5 * (a[j] + b[j]))
+        [upwards, -upwards].map(|off| centre * cos + off).to_vec()
+    }
+
+    /// Radiance of what is seen at an angle from the sun with this cosine.
+    #[inline(always)]
+    pub(super) fn shade(&self, seen: &Seen<L>, towards: f64, single: bool) -> [f64; L] {
+        let Optics { species, aureole, .. } = &*self.optics;
+        let mut depth = [0.0; L];
+        if !single {
+            let mut whole = [0.0; L];
+            for (_, once) in species.iter().zip(&seen.once).filter(|(one, _)| !one.is_molecular()) {
+                for j in 0..L {
+                    whole[j] += once[j];
+                }
+            }
+            for j in 0..L {
+                depth[j] = if whole[j] > 0.0 { seen.peaks[j] / whole[j] } else { 0.0 };
+            }
+        }
+        let mut sum = seen.rest;
+        for (i, (one, once)) in species.iter().zip(&seen.once).enumerate() {
+            let phase = if single { one.phase.values(towards) } else { aureole.phase(i, one, towards, &depth) };
+            for j in 0..L {
+                sum[j] += phase[j] * one.whole[j] * once[j];
+            }
+        }
+        sum
     }
 
     #[inline(always)]
-    fn look(&self, look: &Look<'_, L>) -> [f64; L] {
+    pub(super) fn look(&self, look: &Look<'_, L>) -> Seen<L> {
         let Look { from, direction, sun, single, sunlight, .. } = *look;
-        let mut sum = [0.0; L];
-        let Some(chord) = self.optics.columns.chord(from, direction) else { return sum };
+        let mut seen = Seen::NOTHING;
+        let Some(chord) = self.optics.columns.chord(from, direction) else { return seen };
         let (begin, end) = chord.ends();
         let sight = Sight { solved: self, chord: &chord, from, direction, sun, sunlight };
         let towards = direction.dot(sun);
@@ -63,11 +87,7 @@ impl<const L: usize> Solved<L> {
         let places = crossings(&chord, &self.grid.levels, backwards);
         let species = &self.optics.species;
         let mut weights = vec![[0.0; L]; species.len() * places.len()];
-        let mut phases = [[0.0; L]; MOST_SPECIES];
-        for (phase, one) in phases.iter_mut().zip(species) {
-            let values = one.phase.values(towards);
-            *phase = std::array::from_fn(|j| values[j] * one.whole[j]);
-        }
+        let through = if single { None } else { self.optics.aureole.along(from, direction) };
         // Four nodes of Gauss' rule where the line passes through the air in front of space, or two.
         let fine = chord.perigee() > 0.0 && begin < 0.0;
         let [edge, other] = sight.shadow_edges();
@@ -78,9 +98,9 @@ impl<const L: usize> Solved<L> {
             let stencil = Stencil::around(i, places.len());
             let mut taker = Taker {
                 sight: &sight,
-                phases: &phases,
+                through: through.as_ref(),
                 spread: (!single).then_some(Spread { places: &places, stencil, weights: &mut weights }),
-                sum: &mut sum,
+                seen: &mut seen,
             };
             for b in cuts.into_iter().chain([end]) {
                 let b = b.min(end);
@@ -96,7 +116,7 @@ impl<const L: usize> Solved<L> {
         if !single {
             let mut harmonics = Vec::with_capacity(self.optics.moments.count());
             for (place, weights) in places.iter().zip(weights.chunks_exact(species.len().max(1))) {
-                sight.add_sources(place, weights, towards, &mut harmonics, &mut sum);
+                sight.add_sources(place, weights, towards, &mut harmonics, &mut seen.rest);
             }
         }
         if chord.ends_on_ground() {
@@ -112,10 +132,10 @@ impl<const L: usize> Solved<L> {
                 }
             }
             for j in 0..L {
-                sum[j] += through[j] * self.optics.albedo[j] * FRAC_1_PI * light[j];
+                seen.rest[j] += through[j] * self.optics.albedo[j] * FRAC_1_PI * light[j];
             }
         }
-        sum
+        seen
     }
 
     /// Irradiance of the ground at a place of it by all light but the sun's own.
@@ -200,16 +220,32 @@ impl<const L: usize> NullaryFnOnce for Look<'_, L> {
 
     #[inline(always)]
     fn call(self) -> [f64; L] {
-        self.solved.look(&self)
+        let seen = self.solved.look(&self);
+        self.solved.shade(&seen, self.direction.dot(self.sun), self.single)
     }
+}
+
+/// What a look sees, before the phase functions of sunlight scattered once.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen<const L: usize> {
+    /// Radiance of all other light.
+    pub(super) rest: [f64; L],
+    /// Of each species the integral of its scattering coefficient times the transmittances to the eye and to the sun.
+    pub(super) once: [[f64; L]; MOST_SPECIES],
+    /// Sum of that over the species with peaks, times the depth of peaks.
+    pub(super) peaks: [f64; L],
+}
+
+impl<const L: usize> Seen<L> {
+    const NOTHING: Self = Self { rest: [0.0; L], once: [[0.0; L]; MOST_SPECIES], peaks: [0.0; L] };
 }
 
 /// Takes sunlight scattered once, and the weights of the table's sources.
 struct Taker<'a, const L: usize> {
     sight: &'a Sight<'a, L>,
-    phases: &'a [[f64; L]; MOST_SPECIES],
+    through: Option<&'a Through<'a, L>>,
     spread: Option<Spread<'a, L>>,
-    sum: &'a mut [f64; L],
+    seen: &'a mut Seen<L>,
 }
 
 impl<const L: usize> Take<L> for Taker<'_, L> {
@@ -218,13 +254,22 @@ impl<const L: usize> Take<L> for Taker<'_, L> {
         if let Some(spread) = &mut self.spread {
             spread.take(s, scattered);
         }
-        let Sight { chord, from, direction, sun, sunlight, .. } = *self.sight;
-        let Some(through) = sunlight.transmittance(chord.place(from, direction, s), sun) else {
+        let Sight { solved, chord, from, direction, sun, sunlight } = *self.sight;
+        let place = chord.place(from, direction, s);
+        let Some(sunlight) = sunlight.transmittance(place, sun) else {
             return;
         };
-        for (phase, scattered) in self.phases.iter().zip(scattered) {
+        let depth = self.through.map(|through| through.depth(s, place, sun));
+        for ((once, scattered), one) in self.seen.once.iter_mut().zip(scattered).zip(&solved.optics.species) {
             for j in 0..L {
-                self.sum[j] += phase[j] * scattered[j] * through[j];
+                once[j] += scattered[j] * sunlight[j];
+            }
+            if let Some(depth) = &depth
+                && !one.is_molecular()
+            {
+                for j in 0..L {
+                    self.seen.peaks[j] += scattered[j] * sunlight[j] * depth[j];
+                }
             }
         }
     }

@@ -1,0 +1,174 @@
+//! Sunlight scattered several times within forward peaks: what delta-M loses near the sun.
+//!
+//! A phase function is P = P_M + f Q: P_M the series that the table keeps, Q the peak, whose moments q_l are 1 up to the last degree
+//! kept and chi_l / f beyond it. For the table's air light scattered by Q goes straight on, and what is scattered once by P (TMS,
+//! Nakajima & Tanaka 1988) arrives with that air's extinction. So light scattered once by a peak shows how wide the peak is, but not that
+//! it is scattered there again, and it counts twice what the table takes for direct sunlight.
+//!
+//! Near the sun all ways of light scattered by peaks alone are as long as the straight one. If T is the optical depth of peaks along
+//! it, from the top of the air by the place to the eye, light of n such scatterings has the share e^-T T^n / n! (Poisson) and the n-fold
+//! convolution of Q, with the moments q_l^n. Against the table's air, which has e^-T taken out, light scattered once by Q
+//! stands for all of them if it gets the function
+//!
+//! G(Theta, T) = e^-T sum_(n >= 1) T^(n-1) / n! Q^(*n)(Theta).
+//!
+//! To the second order in T that is what Nakajima & Tanaka (1988) call IMS, with the true lengths of a round planet. T here is the mean
+//! over the line of sight, weighted by the light scattered once.
+
+use super::harmonics::legendre;
+use super::line::MOST_SPECIES;
+use super::species::{Species, moments};
+use crate::atmosphere::{Chord, Columns, Component, Medium, MediumError, Tolerance};
+use crate::geometry::{Place, Shape};
+use crate::vectors::exp_minus;
+use glam::DVec3;
+use std::f64::consts::{FRAC_1_PI, PI};
+
+/// Convolutions that are tabulated: twofold and so on; the last stands for all further ones.
+const FOLDS: usize = 5;
+
+/// The highest moment of a peak: the squares of those beyond are nothing.
+const LAST: usize = 400;
+
+/// Steps of the scattering angle Theta = pi (i / STEPS)^2.
+const STEPS: usize = 384;
+
+/// Of a peak that has less of the scattered light nothing is made.
+const LEAST: f64 = 1e-3;
+
+/// The peaks of an atmosphere's phase functions.
+#[derive(Debug)]
+pub(super) struct Aureole<const L: usize> {
+    /// Of each species.
+    peaks: [Option<Peak<L>>; MOST_SPECIES],
+}
+
+/// The peak of a phase function.
+#[derive(Debug)]
+struct Peak<const L: usize> {
+    /// Depths of light scattered by it, at the wavelength where that is most, and the other wavelengths as shares.
+    columns: Columns<1>,
+    shares: [f64; L],
+    /// f Q^(*n) in sr^-1 for n = 2 and further, by angle.
+    folds: Vec<[[f64; L]; FOLDS]>,
+}
+
+/// A line through the peaks.
+pub(super) struct Through<'a, const L: usize> {
+    peaks: [Option<(&'a Peak<L>, Chord<'a, 1>)>; MOST_SPECIES],
+}
+
+impl<const L: usize> Aureole<L> {
+    /// Without peaks.
+    pub(super) fn none() -> Self {
+        Self { peaks: Default::default() }
+    }
+
+    /// Of the species of a medium from which the peaks were cut.
+    pub(super) fn new(species: &[Species<L>], medium: &Medium<L>, shape: Shape) -> Result<Self, MediumError> {
+        let mut peaks: [Option<Peak<L>>; MOST_SPECIES] = Default::default();
+        for (peak, one) in peaks.iter_mut().zip(species) {
+            if one.straight().iter().any(|&f| f > LEAST) {
+                *peak = Some(Peak::new(one, medium, shape)?);
+            }
+        }
+        Ok(Self { peaks })
+    }
+
+    /// A line of sight; none where there are no peaks.
+    #[inline(always)]
+    pub(super) fn along(&self, from: Place, direction: DVec3) -> Option<Through<'_, L>> {
+        if self.peaks.iter().all(Option::is_none) {
+            return None;
+        }
+        let mut peaks = [const { None }; MOST_SPECIES];
+        for (through, peak) in peaks.iter_mut().zip(&self.peaks) {
+            *through = peak.as_ref().and_then(|peak| Some((peak, peak.columns.chord(from, direction)?)));
+        }
+        Some(Through { peaks })
+    }
+
+    /// What stands for the phase function of a species, in sr^-1, where the mean depth of peaks is T.
+    #[inline(always)]
+    pub(super) fn phase(&self, index: usize, species: &Species<L>, cosine: f64, depth: &[f64; L]) -> [f64; L] {
+        let cosine = cosine.clamp(-1.0, 1.0);
+        let mut phase = species.phase.values(cosine);
+        let Some(peak) = &self.peaks[index] else { return phase };
+        let kept = species.kept(cosine);
+        let place = (cosine.acos() / PI).sqrt() * STEPS as f64;
+        let below = (place as usize).min(STEPS - 1);
+        let share = place - below as f64;
+        let (a, b) = (&peak.folds[below], &peak.folds[below + 1]);
+        let through = exp_minus(*depth);
+        for j in 0..L {
+            // Shares of n scatterings, over T; the last has what is left of (1 - e^-T) / T.
+            let (e, t) = (through[j], depth[j].max(1e-6));
+            let mut term = e;
+            let mut left = (1.0 - e) / t - e;
+            let mut sum = 0.0;
+            for n in 0..FOLDS {
+                term *= t / (n as f64 + 2.0);
+                let this = if n + 1 < FOLDS { term } else { left };
+                left -= term;
+                sum += this * (a[n][j] + share * (b[n][j] - a[n][j]));
+            }
+            phase[j] += (e - 1.0) * (phase[j] - kept[j]) + sum;
+        }
+        phase
+    }
+}
+
+impl<const L: usize> Through<'_, L> {
+    /// Depth of peaks from the eye to a point of the line and on to the sun.
+    #[inline(always)]
+    pub(super) fn depth(&self, s: f64, place: Place, sun: DVec3) -> [f64; L] {
+        let mut depth = [0.0; L];
+        for (peak, chord) in self.peaks.iter().flatten() {
+            let [before] = chord.point(s).depth;
+            let [after] = peak.columns.chord(place, sun).map_or([0.0], |chord| chord.total());
+            for j in 0..L {
+                depth[j] += (before + after) * peak.shares[j];
+            }
+        }
+        depth
+    }
+}
+
+impl<const L: usize> Peak<L> {
+    fn new(species: &Species<L>, medium: &Medium<L>, shape: Shape) -> Result<Self, MediumError> {
+        let straight = species.straight();
+        // What was cut off the cross-section: f of the whole, the rest is 1 - f of it.
+        let cut: [f64; L] = std::array::from_fn(|j| species.scattering[j] * straight[j] / (1.0 - straight[j]));
+        let most = cut.iter().copied().fold(0.0, f64::max);
+        let density = medium.components()[species.component].density.clone();
+        let phase = crate::phase::Phase::Rayleigh { gamma: [0.0] };
+        let component = Component { density, scattering: [most], absorption: [0.0], phase };
+        let columns = Columns::new(&Medium::new(vec![component], medium.top_m())?, shape, Tolerance::SOLVE);
+        let chi = moments(&species.phase, LAST);
+        let kept = species.coefficients.len();
+        let peak: Vec<[f64; L]> =
+            (0..=LAST)
+                .map(|l| {
+                    std::array::from_fn(|j| {
+                        if l < kept { 1.0 } else { (chi[l][j] / straight[j].max(1e-12)).clamp(-1.0, 1.0) }
+                    })
+                })
+                .collect();
+        let folds = (0..=STEPS).map(|i| {
+            let angle = PI * (i as f64 / STEPS as f64).powi(2);
+            let mut sums = [[0.0; L]; FOLDS];
+            for ((l, p), q) in (0..).zip(legendre(LAST, angle.cos())).zip(&peak) {
+                let weight = f64::from(2 * l + 1) * 0.25 * FRAC_1_PI * p;
+                for j in 0..L {
+                    let mut power = weight * straight[j] * q[j];
+                    for sum in &mut sums {
+                        power *= q[j];
+                        sum[j] += power;
+                    }
+                }
+            }
+            sums
+        });
+        Ok(Self { columns, shares: cut.map(|cut| cut / most), folds: folds.collect() })
+    }
+}

@@ -1,0 +1,354 @@
+//! All that an observer sees with a sun, from looks in few directions.
+//!
+//! What a look sees ([`Seen`]: before the phase functions, which have the narrow features) is smooth in the direction but for the horizon, the
+//! edge of the air and lines that touch a layer's edge. Those are circles about the vertical: between two of them it is
+//! interpolated from looks on rings of zenith angle, closer towards both ends (theta = a + (b - a) sin^2(pi x / 2), even in x: a
+//! root at an end becomes a line), and even in azimuth from the sun, by Lagrange's polynomials through six nodes each way. The phase
+//! functions are those of the direction itself.
+//!
+//! How many looks that takes is found out. Of a part between two edges nine rings are looked at, and those between them; where the nine
+//! do not give the radiance of the others to the asked error, each half is such a part. Where halves do not end, every
+//! direction is looked at by itself.
+
+use super::line::MOST_SPECIES;
+use super::view::{Look, Seen};
+use super::{Optics, Solved};
+use crate::geometry::Place;
+use crate::vectors::vectorised;
+use glam::DVec3;
+use pulp::NullaryFnOnce;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Intervals of azimuth from the sun to its opposite: at first and at most.
+const AZIMUTHS: (usize, usize) = (4, 64);
+
+/// Intervals between rings of a part, before those between them are added.
+const RINGS: usize = 8;
+
+/// Parts that lie between two edges, and how often each may be halved.
+const PARTS: usize = 4;
+const HALVES: u32 = 5;
+
+/// Nodes of a polynomial.
+const NODES: usize = 6;
+
+/// Rings stay off edges by this many radians.
+const OFF: f64 = 1e-6;
+
+/// Most edges of layers that are heeded.
+const MOST_EDGES: usize = 24;
+
+/// Radiance in all directions at a place with a sun.
+#[derive(Debug)]
+pub struct Panorama<const L: usize> {
+    from: Place,
+    sun: DVec3,
+    /// Unit vector to the sun's azimuth.
+    ahead: DVec3,
+    parts: Vec<Part<L>>,
+}
+
+/// Directions between two rings.
+#[derive(Debug)]
+struct Part<const L: usize> {
+    between: Between,
+    /// Shares of the way between the edges.
+    ends: (f64, f64),
+    /// None: it is looked at directly.
+    nodes: Option<Nodes<L>>,
+}
+
+/// Zenith angles between two edges.
+#[derive(Debug, Clone, Copy)]
+struct Between(f64, f64);
+
+/// Looks at the nodes of a part.
+#[derive(Debug)]
+struct Nodes<const L: usize> {
+    rings: usize,
+    azimuths: usize,
+    /// [ring][azimuth][`rows`]: what is seen.
+    values: Vec<[f32; L]>,
+    rows: usize,
+}
+
+impl<const L: usize> Panorama<L> {
+    /// For an observer at `from` with the sun, a parallel beam, in the unit direction `sun`, off by about the share `error` of radiance at
+    /// most; of the parts in which some of the directions `wanted` lie. In others it looks.
+    #[must_use]
+    pub fn new(solved: &Solved<L>, from: Place, sun: DVec3, error: f64, wanted: &[DVec3]) -> Self {
+        let level = sun - from.up * sun.dot(from.up);
+        let ahead = level.try_normalize().unwrap_or_else(|| from.up.any_orthonormal_vector());
+        let mut all = Self { from, sun, ahead, parts: Vec::new() };
+        let survey = Survey { all: &all, solved, error };
+        let edges = edges(solved, from);
+        let parts = edges.windows(2).flat_map(|ends| (0..PARTS).map(|k| (Between(ends[0], ends[1]), k)));
+        let parts: Vec<_> = parts.collect();
+        let zeniths: Vec<_> = wanted.iter().map(|direction| all.zenith(*direction)).collect();
+        let parts = parts.into_par_iter().flat_map_iter(|(between, k)| {
+            let ends = (k as f64 / PARTS as f64, (k + 1) as f64 / PARTS as f64);
+            let (low, high) = (between.at(ends.0) - OFF, between.at(ends.1) + OFF);
+            if zeniths.iter().any(|zenith| low <= *zenith && *zenith <= high) {
+                survey.part(between, ends)
+            } else {
+                vec![Part { between, ends, nodes: None }]
+            }
+        });
+        all.parts = parts.collect();
+        all
+    }
+
+    /// Radiance per unit solar irradiance (sr^-1) out of the unit `direction`, as [`Solved::radiance`] of all light.
+    #[must_use]
+    pub fn radiance(&self, solved: &Solved<L>, direction: DVec3) -> [f64; L] {
+        let zenith = self.zenith(direction);
+        let part = self.parts.iter().find(|part| zenith <= part.between.1 && part.between.share(zenith) <= part.ends.1);
+        let Some((part, nodes)) = part.and_then(|part| Some((part, part.nodes.as_ref()?))) else {
+            return solved.radiance(self.from, direction, self.sun, false);
+        };
+        let (a, b) = part.ends;
+        let share = (part.between.share(zenith) - a) / (b - a);
+        let level = direction - self.from.up * direction.dot(self.from.up);
+        let (x, y) = (level.dot(self.ahead), level.dot(self.from.up.cross(self.ahead)));
+        let at = [share, y.abs().atan2(x) / PI];
+        vectorised(Glance { solved, nodes, at, towards: direction.dot(self.sun) })
+    }
+
+    /// How many looks it holds.
+    #[must_use]
+    pub fn looks(&self) -> usize {
+        self.parts.iter().flat_map(|part| &part.nodes).map(|nodes| (nodes.rings + 1) * (nodes.azimuths + 1)).sum()
+    }
+
+    fn zenith(&self, direction: DVec3) -> f64 {
+        let across = direction - self.from.up * direction.dot(self.from.up);
+        across.length().atan2(direction.dot(self.from.up))
+    }
+
+    /// The direction of a zenith angle and a share of half a circle.
+    fn direction(&self, zenith: f64, turn: f64) -> DVec3 {
+        let ((sin, cos), (across, along)) = (zenith.sin_cos(), (PI * turn).sin_cos());
+        let level = self.ahead * along + self.from.up.cross(self.ahead) * across;
+        self.from.up * cos + level * sin
+    }
+}
+
+impl Between {
+    /// The zenith angle of a share x of the way: theta = a + (b - a) sin^2(pi x / 2).
+    fn at(self, share: f64) -> f64 {
+        let (a, b) = (self.0 + OFF, self.1 - OFF);
+        a + (b - a) * (0.5 * PI * share).sin().powi(2)
+    }
+
+    /// The share of a zenith angle.
+    fn share(self, zenith: f64) -> f64 {
+        let (a, b) = (self.0 + OFF, self.1 - OFF);
+        ((zenith - a) / (b - a)).clamp(0.0, 1.0).sqrt().asin() * 2.0 / PI
+    }
+}
+
+/// A direction and what is seen there.
+type Looked<const L: usize> = (DVec3, Seen<L>);
+
+/// Looks for a panorama.
+struct Survey<'a, const L: usize> {
+    all: &'a Panorama<L>,
+    solved: &'a Solved<L>,
+    error: f64,
+}
+
+impl<const L: usize> Survey<'_, L> {
+    /// Looks from one azimuth to its opposite, at every node or between those of half as many.
+    fn ring(&self, zenith: f64, azimuths: usize, only_odd: bool) -> Vec<Looked<L>> {
+        let sunlight = &self.solved.optics.columns;
+        let Panorama { from, sun, .. } = *self.all;
+        let look = |i: usize| {
+            let direction = self.all.direction(zenith, i as f64 / azimuths as f64);
+            let look = Look { solved: self.solved, from, direction, sun, single: false, sunlight };
+            (direction, vectorised(See(look)))
+        };
+        (0..=azimuths).filter(|i| !only_odd || i % 2 == 1).map(look).collect()
+    }
+
+    /// A part, or its halves.
+    fn part(&self, between: Between, ends: (f64, f64)) -> Vec<Part<L>> {
+        let at = |share: f64| between.at(ends.0 + (ends.1 - ends.0) * share);
+        let tried: Option<Vec<_>> = [0.05, 0.5, 0.95].iter().map(|share| self.azimuths(at(*share))).collect();
+        let Some(azimuths) = tried.and_then(|tried| tried.into_iter().max()) else {
+            return vec![Part { between, ends, nodes: None }];
+        };
+        let rings = (0..=RINGS).map(|i| self.ring(at(i as f64 / RINGS as f64), azimuths, false)).collect();
+        self.halves(between, ends, azimuths, rings, HALVES)
+    }
+
+    fn halves(
+        &self,
+        between: Between,
+        ends: (f64, f64),
+        azimuths: usize,
+        rings: Vec<Vec<Looked<L>>>,
+        halves: u32,
+    ) -> Vec<Part<L>> {
+        let nodes = self.nodes(azimuths, &rings);
+        let (mut all, mut good) = (Vec::with_capacity(2 * RINGS + 1), true);
+        for (i, ring) in rings.into_iter().enumerate() {
+            if i > 0 {
+                let share = (2 * i - 1) as f64 / (2 * RINGS) as f64;
+                let new = self.ring(between.at(ends.0 + (ends.1 - ends.0) * share), azimuths, false);
+                let shown = |(j, looked)| self.is_good(&nodes, [share, j as f64 / azimuths as f64], looked);
+                good = good && new.iter().enumerate().all(shown);
+                all.push(new);
+            }
+            all.push(ring);
+        }
+        if good || halves == 0 {
+            let nodes = good.then(|| self.nodes(azimuths, &all));
+            return vec![Part { between, ends, nodes }];
+        }
+        let second = all[RINGS..].to_vec();
+        all.truncate(RINGS + 1);
+        let middle = 0.5 * (ends.0 + ends.1);
+        let mut parts = self.halves(between, (ends.0, middle), azimuths, all, halves - 1);
+        parts.extend(self.halves(between, (middle, ends.1), azimuths, second, halves - 1));
+        parts
+    }
+
+    /// How many intervals of azimuth a ring needs.
+    fn azimuths(&self, zenith: f64) -> Option<usize> {
+        let mut azimuths = AZIMUTHS.0;
+        let mut ring = self.ring(zenith, azimuths, false);
+        while azimuths <= AZIMUTHS.1 {
+            let nodes = self.nodes(azimuths, std::slice::from_ref(&ring));
+            let new = self.ring(zenith, 2 * azimuths, true);
+            let turn = |j: usize| (2 * j + 1) as f64 / (2 * azimuths) as f64;
+            if new.iter().enumerate().all(|(j, looked)| self.is_good(&nodes, [0.0, turn(j)], looked)) {
+                return Some(azimuths);
+            }
+            let mut both = Vec::with_capacity(2 * azimuths + 1);
+            let mut new = new.into_iter();
+            for old in ring {
+                both.push(old);
+                both.extend(new.next());
+            }
+            (ring, azimuths) = (both, 2 * azimuths);
+        }
+        None
+    }
+
+    fn nodes(&self, azimuths: usize, rings: &[Vec<Looked<L>>]) -> Nodes<L> {
+        let species = self.solved.optics.species.len();
+        let single = |row: &[f64; L]| row.map(|value| value as f32);
+        let of = |(_, seen): &Looked<L>| {
+            let mut values = vec![single(&seen.rest), single(&seen.peaks)];
+            values.extend(seen.once[..species].iter().map(single));
+            values
+        };
+        let values = rings.iter().flatten().flat_map(of).collect();
+        Nodes { rings: rings.len() - 1, azimuths, values, rows: 2 + species }
+    }
+
+    /// Whether nodes show what is seen.
+    fn is_good(&self, nodes: &Nodes<L>, at: [f64; 2], (direction, seen): &Looked<L>) -> bool {
+        let towards = direction.dot(self.all.sun);
+        let found = vectorised(Glance { solved: self.solved, nodes, at, towards });
+        let right = self.solved.shade(seen, towards, false);
+        found.iter().zip(right).all(|(found, right)| (found - right).abs() <= self.error * right.abs())
+    }
+}
+
+/// Zenith angles of the edges: of the ground, the air and its layers, with both ends.
+fn edges<const L: usize>(solved: &Solved<L>, from: Place) -> Vec<f64> {
+    let Optics { medium, .. } = &*solved.optics;
+    let radius = solved.grid.radius;
+    let layers = medium.jumps().into_iter().chain(medium.bends()).take(MOST_EDGES);
+    let altitudes = [0.0, medium.top_m()].into_iter().chain(layers);
+    let touched = altitudes.filter(|altitude| *altitude < from.altitude_m).map(|altitude| {
+        // PI - asin of (R + a) / (R + h), by the half angle's tangent: nothing cancels.
+        let (below, sum) = (from.altitude_m - altitude, 2.0 * radius + from.altitude_m + altitude);
+        0.5 * PI + (below * sum).sqrt().atan2(radius + altitude)
+    });
+    // A line that rises from the ground behind the observer crosses no levels there.
+    let mut edges: Vec<f64> = touched.flat_map(|edge| [PI - edge, edge]).chain([0.0, PI]).collect();
+    edges.sort_by(f64::total_cmp);
+    edges.dedup_by(|b, a| *b - *a < 1e3 * OFF);
+    edges
+}
+
+/// The nodes around a place at a share of so many intervals, and their weights. A circle goes on mirrored at its ends.
+#[inline(always)]
+fn around(intervals: usize, share: f64, mirrored: bool) -> [(usize, f64); NODES] {
+    let place = share * intervals as f64;
+    let reach = NODES as i64 - 1;
+    let mut first = (place as i64).min(intervals as i64 - 1) - (reach - 1) / 2;
+    let count = if mirrored { NODES } else { NODES.min(intervals + 1) };
+    if !mirrored {
+        first = first.min((intervals + 1) as i64 - count as i64).max(0);
+    }
+    let mut nodes = [(0, 0.0); NODES];
+    for (k, node) in nodes.iter_mut().enumerate().take(count) {
+        let at = first + k as i64;
+        let mut weight = 1.0;
+        for other in (0..count).filter(|other| *other != k) {
+            let other = first + other as i64;
+            weight *= (place - other as f64) / (at - other) as f64;
+        }
+        let last = intervals as i64;
+        let index = if at < 0 {
+            -at
+        } else if at > last {
+            2 * last - at
+        } else {
+            at
+        };
+        *node = (index.clamp(0, last) as usize, weight);
+    }
+    nodes
+}
+
+/// A look with what it sees.
+struct See<'a, const L: usize>(Look<'a, L>);
+
+impl<const L: usize> NullaryFnOnce for See<'_, L> {
+    type Output = Seen<L>;
+
+    #[inline(always)]
+    fn call(self) -> Seen<L> {
+        self.0.solved.look(&self.0)
+    }
+}
+
+/// What nodes say of a direction.
+struct Glance<'a, const L: usize> {
+    solved: &'a Solved<L>,
+    nodes: &'a Nodes<L>,
+    at: [f64; 2],
+    towards: f64,
+}
+
+impl<const L: usize> NullaryFnOnce for Glance<'_, L> {
+    type Output = [f64; L];
+
+    #[inline(always)]
+    fn call(self) -> [f64; L] {
+        let Self { solved, nodes, at: [ring, azimuth], towards } = self;
+        let across = around(nodes.azimuths, azimuth, true);
+        let mut values = [[0.0_f32; L]; MOST_SPECIES + 2];
+        for (ring, a) in around(nodes.rings, ring, false) {
+            if a == 0.0 {
+                continue;
+            }
+            for (azimuth, b) in across {
+                let weight = (a * b) as f32;
+                let first = (ring * (nodes.azimuths + 1) + azimuth) * nodes.rows;
+                for (value, row) in values.iter_mut().zip(&nodes.values[first..first + nodes.rows]) {
+                    for j in 0..L {
+                        value[j] += weight * row[j];
+                    }
+                }
+            }
+        }
+        let [rest, peaks, once @ ..] = values.map(|row| row.map(f64::from));
+        solved.shade(&Seen { rest, once, peaks }, towards, false)
+    }
+}
