@@ -55,6 +55,8 @@ struct Part<const L: usize> {
     between: Between,
     /// Shares of the way between the edges.
     ends: (f64, f64),
+    /// Zenith angle of the second.
+    last: f64,
     /// None: it is looked at directly.
     nodes: Option<Nodes<L>>,
 }
@@ -92,7 +94,7 @@ impl<const L: usize> Panorama<L> {
             if zeniths.iter().any(|zenith| low <= *zenith && *zenith <= high) {
                 survey.part(between, ends)
             } else {
-                vec![Part { between, ends, nodes: None }]
+                vec![Part::new(between, ends, None)]
             }
         });
         all.parts = parts.collect();
@@ -103,12 +105,12 @@ impl<const L: usize> Panorama<L> {
     #[must_use]
     pub fn radiance(&self, solved: &Solved<L>, direction: DVec3) -> [f64; L] {
         let zenith = self.zenith(direction);
-        let part = self.parts.iter().find(|part| zenith <= part.between.1 && part.between.share(zenith) <= part.ends.1);
+        let part = self.parts.iter().find(|part| zenith <= part.last);
         let Some((part, nodes)) = part.and_then(|part| Some((part, part.nodes.as_ref()?))) else {
             return solved.radiance(self.from, direction, self.sun, false);
         };
         let (a, b) = part.ends;
-        let share = (part.between.share(zenith) - a) / (b - a);
+        let share = ((part.between.share(zenith) - a) / (b - a)).clamp(0.0, 1.0);
         let level = direction - self.from.up * direction.dot(self.from.up);
         let (x, y) = (level.dot(self.ahead), level.dot(self.from.up.cross(self.ahead)));
         let at = [share, y.abs().atan2(x) / PI];
@@ -131,6 +133,13 @@ impl<const L: usize> Panorama<L> {
         let ((sin, cos), (across, along)) = (zenith.sin_cos(), (PI * turn).sin_cos());
         let level = self.ahead * along + self.from.up.cross(self.ahead) * across;
         self.from.up * cos + level * sin
+    }
+}
+
+impl<const L: usize> Part<L> {
+    fn new(between: Between, ends: (f64, f64), nodes: Option<Nodes<L>>) -> Self {
+        let last = if ends.1 == 1.0 { between.1 } else { between.at(ends.1) };
+        Self { between, ends, last, nodes }
     }
 }
 
@@ -176,7 +185,7 @@ impl<const L: usize> Survey<'_, L> {
         let at = |share: f64| between.at(ends.0 + (ends.1 - ends.0) * share);
         let tried: Option<Vec<_>> = [0.05, 0.5, 0.95].iter().map(|share| self.azimuths(at(*share))).collect();
         let Some(azimuths) = tried.and_then(|tried| tried.into_iter().max()) else {
-            return vec![Part { between, ends, nodes: None }];
+            return vec![Part::new(between, ends, None)];
         };
         let rings = (0..=RINGS).map(|i| self.ring(at(i as f64 / RINGS as f64), azimuths, false)).collect();
         self.halves(between, ends, azimuths, rings, HALVES)
@@ -204,7 +213,7 @@ impl<const L: usize> Survey<'_, L> {
         }
         if good || halves == 0 {
             let nodes = good.then(|| self.nodes(azimuths, &all));
-            return vec![Part { between, ends, nodes }];
+            return vec![Part::new(between, ends, nodes)];
         }
         let second = all[RINGS..].to_vec();
         all.truncate(RINGS + 1);
@@ -275,35 +284,41 @@ fn edges<const L: usize>(solved: &Solved<L>, from: Place) -> Vec<f64> {
     edges
 }
 
-/// The nodes around a place at a share of so many intervals, and their weights. A circle goes on mirrored at its ends.
+/// Weights of Lagrange's polynomial through nodes at 0, 1 and so on.
 #[inline(always)]
-fn around(intervals: usize, share: f64, mirrored: bool) -> [(usize, f64); NODES] {
+fn weights(x: f64) -> [f64; NODES] {
+    const DIVISORS: [f64; NODES] = [-120.0, 24.0, -12.0, 12.0, -24.0, 120.0];
+    let [a, b, c, d, e, f] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(|node| x - node);
+    let (ab, cd, ef) = (a * b, c * d, e * f);
+    let products = [b * cd * ef, a * cd * ef, ab * d * ef, ab * c * ef, ab * cd * f, ab * cd * e];
+    std::array::from_fn(|k| products[k] / DIVISORS[k])
+}
+
+/// The nodes around a place at a share of so many intervals, and their weights: of one ring itself.
+#[inline(always)]
+fn inside(intervals: usize, share: f64) -> [(usize, f64); NODES] {
+    if intervals == 0 {
+        let mut one = [(0, 0.0); NODES];
+        one[0].1 = 1.0;
+        return one;
+    }
     let place = share * intervals as f64;
-    let reach = NODES as i64 - 1;
-    let mut first = (place as i64).min(intervals as i64 - 1) - (reach - 1) / 2;
-    let count = if mirrored { NODES } else { NODES.min(intervals + 1) };
-    if !mirrored {
-        first = first.min((intervals + 1) as i64 - count as i64).max(0);
-    }
-    let mut nodes = [(0, 0.0); NODES];
-    for (k, node) in nodes.iter_mut().enumerate().take(count) {
-        let at = first + k as i64;
-        let mut weight = 1.0;
-        for other in (0..count).filter(|other| *other != k) {
-            let other = first + other as i64;
-            weight *= (place - other as f64) / (at - other) as f64;
-        }
-        let last = intervals as i64;
-        let index = if at < 0 {
-            -at
-        } else if at > last {
-            2 * last - at
-        } else {
-            at
-        };
-        *node = (index.clamp(0, last) as usize, weight);
-    }
-    nodes
+    let first = (place as usize).saturating_sub(NODES / 2 - 1).min(intervals + 1 - NODES);
+    let weights = weights(place - first as f64);
+    std::array::from_fn(|k| (first + k, weights[k]))
+}
+
+/// As [`inside`], where all goes on mirrored at both ends.
+#[inline(always)]
+fn mirrored(intervals: usize, share: f64) -> [(usize, f64); NODES] {
+    let place = share * intervals as f64;
+    let first = place.floor() as i64 - (NODES as i64 / 2 - 1);
+    let weights = weights(place - first as f64);
+    let last = intervals as i64;
+    std::array::from_fn(|k| {
+        let at = (first + k as i64).abs();
+        ((if at > last { 2 * last - at } else { at }) as usize, weights[k])
+    })
 }
 
 /// A look with what it sees.
@@ -332,21 +347,20 @@ impl<const L: usize> NullaryFnOnce for Glance<'_, L> {
     #[inline(always)]
     fn call(self) -> [f64; L] {
         let Self { solved, nodes, at: [ring, azimuth], towards } = self;
-        let across = around(nodes.azimuths, azimuth, true);
+        let (along, across) = (inside(nodes.rings, ring), mirrored(nodes.azimuths, azimuth));
         let mut values = [[0.0_f32; L]; MOST_SPECIES + 2];
-        for (ring, a) in around(nodes.rings, ring, false) {
-            if a == 0.0 {
-                continue;
-            }
-            for (azimuth, b) in across {
-                let weight = (a * b) as f32;
-                let first = (ring * (nodes.azimuths + 1) + azimuth) * nodes.rows;
-                for (value, row) in values.iter_mut().zip(&nodes.values[first..first + nodes.rows]) {
+        for (row, value) in values.iter_mut().enumerate().take(nodes.rows) {
+            let mut sum = [0.0; L];
+            for (ring, a) in along {
+                for (azimuth, b) in across {
+                    let weight = (a * b) as f32;
+                    let seen = &nodes.values[(ring * (nodes.azimuths + 1) + azimuth) * nodes.rows + row];
                     for j in 0..L {
-                        value[j] += weight * row[j];
+                        sum[j] += weight * seen[j];
                     }
                 }
             }
+            *value = sum;
         }
         let [rest, peaks, once @ ..] = values.map(|row| row.map(f64::from));
         solved.shade(&Seen { rest, once, peaks }, towards, false)
