@@ -5,6 +5,7 @@
 //! samples and the weight of a sample is 1 for the wavelength it was drawn for.
 //! Other wavelengths carried by the same path are weighted by the ratio of values.
 
+use crate::polarisation::{Natural, Scattering};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -38,7 +39,12 @@ pub struct Tabulated<const L: usize> {
     values: Vec<[f64; L]>,
     /// 2 pi times the integral of the values from -1 to each node.
     cumulative: Vec<[f64; L]>,
+    /// P12, P33 and P34 in sr^-1 at each node, where they are known.
+    matrix: Option<Vec<[[f64; 3]; L]>>,
 }
+
+/// By how much P12^2 + P33^2 + P34^2 may exceed P11^2 for rounding and interpolation, as a share.
+const BEYOND: f64 = 0.02;
 
 impl<const L: usize> Tabulated<L> {
     /// Phase functions from their values (sr^-1 up to a factor, which
@@ -65,7 +71,29 @@ impl<const L: usize> Tabulated<L> {
         for j in 0..L {
             values.iter_mut().chain(&mut cumulative).for_each(|row| row[j] /= total[j]);
         }
-        Some(Self { cosines, values, cumulative })
+        Some(Self { cosines, values, cumulative, matrix: None })
+    }
+
+    /// With the scattering matrix of spheres: `ratios` are P12, P33 and P34 over P11 at each node. Between
+    /// nodes P12, P33 and P34 are linear as P11 is, so that the matrix stays a mean of possible ones.
+    ///
+    /// Spheres have P12^2 + P33^2 + P34^2 <= P11^2 (equal for spheres of one size); ratios that interpolation has put
+    /// a little beyond are brought back. `None` if they are far beyond or not as many as the nodes.
+    #[must_use]
+    pub fn with_matrix(self, mut ratios: Vec<[[f64; 3]; L]>) -> Option<Self> {
+        if ratios.len() != self.cosines.len() {
+            return None;
+        }
+        for (row, values) in ratios.iter_mut().zip(&self.values) {
+            for (ratios, value) in row.iter_mut().zip(values) {
+                let square: f64 = ratios.iter().map(|r| r * r).sum();
+                if square.is_nan() || square > 1.0 + BEYOND {
+                    return None;
+                }
+                *ratios = ratios.map(|r| r * value / square.max(1.0).sqrt());
+            }
+        }
+        Some(Self { matrix: Some(ratios), ..self })
     }
 
     /// Cosines of the scattering angle at the nodes, from -1 to 1.
@@ -85,6 +113,19 @@ impl<const L: usize> Tabulated<L> {
         let (i, f) = self.locate(c);
         let (a, b) = (&self.values[i], &self.values[i + 1]);
         std::array::from_fn(|j| a[j] + f * (b[j] - a[j]))
+    }
+
+    /// Matrices of scattering; a phase function alone counts as depolarising.
+    fn matrices(&self, c: f64) -> [Scattering; L] {
+        let (i, f) = self.locate(c);
+        let (a, b) = (&self.values[i], &self.values[i + 1]);
+        let value = |j: usize| a[j] + f * (b[j] - a[j]);
+        let Some(matrix) = &self.matrix else {
+            return std::array::from_fn(|j| Scattering::depolarising(value(j)));
+        };
+        let (a, b) = (&matrix[i], &matrix[i + 1]);
+        let element = |j: usize, k: usize| a[j][k] + f * (b[j][k] - a[j][k]);
+        std::array::from_fn(|j| Scattering::of_spheres(value(j), [element(j, 0), element(j, 1), element(j, 2)]))
     }
 
     fn value(&self, lane: usize, c: f64) -> f64 {
@@ -127,6 +168,34 @@ impl<const L: usize> Phase<L> {
             Self::HenyeyGreenstein { g } => g.map(|g| henyey_greenstein(g, c)),
             Self::Tabulated(table) => table.values(c),
         }
+    }
+
+    /// Whether it knows what it does to polarisation: Henyey-Greenstein functions, and tables of the phase function alone, do not.
+    #[must_use]
+    pub fn has_matrix(&self) -> bool {
+        match self {
+            Self::Rayleigh { .. } => true,
+            Self::HenyeyGreenstein { .. } => false,
+            Self::Tabulated(table) => table.matrix.is_some(),
+        }
+    }
+
+    /// Matrices of scattering in sr^-1 at every wavelength, a1 the value; depolarising where there is none ([`Phase::has_matrix`]).
+    #[must_use]
+    #[inline]
+    pub fn matrices(&self, c: f64) -> [Scattering; L] {
+        match self {
+            Self::Rayleigh { gamma } => gamma.map(|gamma| Scattering::rayleigh(gamma, c)),
+            Self::HenyeyGreenstein { g } => g.map(|g| Scattering::depolarising(henyey_greenstein(g, c))),
+            Self::Tabulated(table) => table.matrices(c),
+        }
+    }
+
+    /// What becomes of natural light at every wavelength: the first columns of [`Phase::matrices`].
+    #[must_use]
+    #[inline]
+    pub fn natural(&self, c: f64) -> [Natural; L] {
+        self.matrices(c).map(|matrix| matrix.natural())
     }
 
     /// Value in sr^-1 at wavelength number `lane`.

@@ -185,6 +185,12 @@ impl<const L: usize> Medium<L> {
         &self.components
     }
 
+    /// Whether every scatterer knows what it does to polarisation ([`Phase::has_matrix`]).
+    #[must_use]
+    pub fn polarises(&self) -> bool {
+        self.components.iter().all(|c| !c.scatters() || c.phase.has_matrix())
+    }
+
     /// Densities of all components in interval `i` at `fraction` of its height.
     #[inline(always)]
     pub(super) fn densities(&self, interval: usize, fraction: f64) -> [f64; MAX_COMPONENTS] {
