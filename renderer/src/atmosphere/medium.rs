@@ -280,7 +280,7 @@ impl<const L: usize> Medium<L> {
 
     /// All coefficients at an altitude in m; the nearest end of the medium for what lies outside.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn local_at(&self, altitude_m: f64) -> Local<L> {
         let (interval, fraction) = self.finder.locate(altitude_m);
         self.local_in(interval, fraction)

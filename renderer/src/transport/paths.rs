@@ -129,7 +129,7 @@ pub(super) fn trace<R: Radiation, const L: usize>(
 }
 
 /// Where the light is when the sun is low: along the horizon below which it has gone.
-#[inline]
+#[inline(always)]
 fn sunward(place: Place, sun: Option<DVec3>) -> Option<Lobe> {
     let sun = sun?;
     let sine = place.up.dot(sun);
@@ -189,7 +189,7 @@ fn fly<R: Radiation, const L: usize>(
 }
 
 /// Whether the sun is low ([`LOW_SUN`]) at an end of a chord.
-#[inline]
+#[inline(always)]
 fn sun_is_low<const L: usize>(shape: Shape, chord: &Chord<'_, L>, place: Place, direction: DVec3, sun: DVec3) -> bool {
     let Shape::Sphere { radius_m } = shape else { return false };
     let (from, to) = chord.ends();
@@ -384,7 +384,7 @@ impl Guide {
 }
 
 /// The place at share `t` of a stretch, closer together where it is low: uniform in the root of the height above its lowest point.
-#[inline]
+#[inline(always)]
 fn spread<const L: usize>(chord: &Chord<'_, L>, from: f64, to: f64, t: f64) -> f64 {
     if t <= 0.0 {
         return from;
@@ -403,14 +403,14 @@ fn spread<const L: usize>(chord: &Chord<'_, L>, from: f64, to: f64, t: f64) -> f
 }
 
 /// exp(-a) - exp(-b) without cancellation.
-#[inline]
+#[inline(always)]
 fn between(a: f64, b: f64) -> f64 {
     -(-a).exp() * (a - b).min(0.0).exp_m1()
 }
 
 /// The stretches of a chord outside the planet's shadow: at most two, for the shadow is convex. A hair of the shadow is
 /// counted as light, so that rounding loses none; what is dark there finds the planet in the way.
-#[inline]
+#[inline(always)]
 fn lit<const L: usize>(
     shape: Shape,
     chord: &Chord<'_, L>,
