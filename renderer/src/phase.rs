@@ -39,12 +39,9 @@ pub struct Tabulated<const L: usize> {
     values: Vec<[f64; L]>,
     /// 2 pi times the integral of the values from -1 to each node.
     cumulative: Vec<[f64; L]>,
-    /// P12, P33 and P34 in sr^-1 at each node, where they are known.
-    matrix: Option<Vec<[[f64; 3]; L]>>,
+    /// Matrices of scattering in sr^-1 at each node, where they are known.
+    matrices: Option<Vec<[Scattering; L]>>,
 }
-
-/// By how much P12^2 + P33^2 + P34^2 may exceed P11^2 for rounding and interpolation, as a share.
-const BEYOND: f64 = 0.02;
 
 impl<const L: usize> Tabulated<L> {
     /// Phase functions from their values (sr^-1 up to a factor, which
@@ -71,29 +68,23 @@ impl<const L: usize> Tabulated<L> {
         for j in 0..L {
             values.iter_mut().chain(&mut cumulative).for_each(|row| row[j] /= total[j]);
         }
-        Some(Self { cosines, values, cumulative, matrix: None })
+        Some(Self { cosines, values, cumulative, matrices: None })
     }
 
-    /// With the scattering matrix of spheres: `ratios` are P12, P33 and P34 over P11 at each node. Between
-    /// nodes P12, P33 and P34 are linear as P11 is, so that the matrix stays a mean of possible ones.
-    ///
-    /// Spheres have P12^2 + P33^2 + P34^2 <= P11^2 (equal for spheres of one size); ratios that interpolation has put
-    /// a little beyond are brought back. `None` if they are far beyond or not as many as the nodes.
+    /// With the matrices of scattering at each node, over their a1. Between nodes every element is linear as the phase
+    /// function is, so that a matrix there is a mean of two possible ones. `None` if they are not as many as the
+    /// nodes, or not [`Scattering::possible`].
     #[must_use]
-    pub fn with_matrix(self, mut ratios: Vec<[[f64; 3]; L]>) -> Option<Self> {
+    pub fn with_matrices(self, mut ratios: Vec<[Scattering; L]>) -> Option<Self> {
         if ratios.len() != self.cosines.len() {
             return None;
         }
         for (row, values) in ratios.iter_mut().zip(&self.values) {
-            for (ratios, value) in row.iter_mut().zip(values) {
-                let square: f64 = ratios.iter().map(|r| r * r).sum();
-                if square.is_nan() || square > 1.0 + BEYOND {
-                    return None;
-                }
-                *ratios = ratios.map(|r| r * value / square.max(1.0).sqrt());
+            for (matrix, &value) in row.iter_mut().zip(values) {
+                *matrix = matrix.possible()? * value;
             }
         }
-        Some(Self { matrix: Some(ratios), ..self })
+        Some(Self { matrices: Some(ratios), ..self })
     }
 
     /// Cosines of the scattering angle at the nodes, from -1 to 1.
@@ -116,16 +107,14 @@ impl<const L: usize> Tabulated<L> {
     }
 
     /// Matrices of scattering; a phase function alone counts as depolarising.
+    #[inline]
     fn matrices(&self, c: f64) -> [Scattering; L] {
-        let (i, f) = self.locate(c);
-        let (a, b) = (&self.values[i], &self.values[i + 1]);
-        let value = |j: usize| a[j] + f * (b[j] - a[j]);
-        let Some(matrix) = &self.matrix else {
-            return std::array::from_fn(|j| Scattering::depolarising(value(j)));
+        let Some(matrices) = &self.matrices else {
+            return self.values(c).map(Scattering::depolarising);
         };
-        let (a, b) = (&matrix[i], &matrix[i + 1]);
-        let element = |j: usize, k: usize| a[j][k] + f * (b[j][k] - a[j][k]);
-        std::array::from_fn(|j| Scattering::of_spheres(value(j), [element(j, 0), element(j, 1), element(j, 2)]))
+        let (i, f) = self.locate(c);
+        let (a, b) = (&matrices[i], &matrices[i + 1]);
+        std::array::from_fn(|j| a[j] * (1.0 - f) + b[j] * f)
     }
 
     fn value(&self, lane: usize, c: f64) -> f64 {
@@ -176,7 +165,7 @@ impl<const L: usize> Phase<L> {
         match self {
             Self::Rayleigh { .. } => true,
             Self::HenyeyGreenstein { .. } => false,
-            Self::Tabulated(table) => table.matrix.is_some(),
+            Self::Tabulated(table) => table.matrices.is_some(),
         }
     }
 
@@ -382,6 +371,28 @@ mod tests {
         ] {
             assert!(Tabulated::new(cosines.clone(), values.clone()).is_none(), "{cosines:?}, {values:?}");
         }
+    }
+
+    #[test]
+    fn matrices_go_with_the_phase_function() {
+        let (table, _) = peaked();
+        let nodes = table.cosines().len();
+        let ratios = |row: [f64; 3]| vec![[Scattering::of_spheres(1.0, row)]; nodes];
+        let with = table.clone().with_matrices(ratios([-0.3, 0.8, 0.5])).expect("possible");
+        for c in [-1.0, -0.97, 0.1, 0.95, 0.99995, 1.0] {
+            let p11 = table.value(0, c);
+            let [matrix] = with.matrices(c);
+            let expected = Scattering::of_spheres(p11, [-0.3, 0.8, 0.5].map(|ratio| ratio * p11));
+            let off = matrix + expected * -1.0;
+            // Lines between the same nodes: rounding.
+            for off in [off.a1, off.a2, off.a3, off.a4, off.b1, off.b2] {
+                assert!(off.abs() <= 1e-14 * p11, "{matrix:?} for {expected:?}");
+            }
+            assert_eq!(table.matrices(c), [Scattering::depolarising(p11)]);
+        }
+        assert!(table.clone().with_matrices(ratios([0.9, 0.9, 0.0])).is_none(), "impossible");
+        assert!(table.clone().with_matrices(ratios([0.0; 3])[1..].to_vec()).is_none(), "too few");
+        assert!(table.with_matrices(ratios([f64::NAN, 0.0, 0.0])).is_none(), "no number");
     }
 
     #[test]

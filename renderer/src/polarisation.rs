@@ -55,6 +55,9 @@ pub struct Turn {
     sin: f64,
 }
 
+/// The share of its polarising elements that a matrix may have too much, see [`Scattering::possible`].
+const BEYOND: f64 = 0.02;
+
 /// The square of the sine of an angle of scattering below which the plane of scattering is not told from rounding.
 const STRAIGHT: f64 = 1e-20;
 
@@ -163,6 +166,20 @@ impl Scattering {
     #[inline]
     pub fn of_spheres(p11: f64, [p12, p33, p34]: [f64; 3]) -> Self {
         Self { a1: p11, a2: p11, a3: p33, a4: p33, b1: p12, b2: p34 }
+    }
+
+    /// Itself, if light of every state stays light, I^2 >= Q^2 + U^2 + V^2:
+    /// (a3 + a4)^2 + 4 b2^2 <= (a1 + a2)^2 - 4 b1^2 and |a3 - a4| <= a1 - a2
+    /// (Hovenier & van der Mee 1996; Hovenier, van der Mee & Domke 2004, appendix A). If rounding or interpolation has put it a little
+    /// beyond, the nearest that is possible with all elements but a1 multiplied by one factor; `None` if this is below 1 - [`BEYOND`].
+    #[must_use]
+    pub fn possible(self) -> Option<Self> {
+        let Self { a1, a2, a3, a4, b1, b2 } = self;
+        let reach = (a3 + a4).hypot(2.0 * b1.hypot(b2)) - a2;
+        let most = reach.max((a3 - a4).abs() + a2);
+        let factor = if most > a1 { a1 / most } else { 1.0 };
+        let sound = a1 >= 0.0 && (a1 + reach).is_finite() && factor >= 1.0 - BEYOND;
+        sound.then(|| Self { a1, ..self * factor })
     }
 
     /// A phase function that loses all polarisation.

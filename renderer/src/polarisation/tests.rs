@@ -207,3 +207,26 @@ fn a_ground_keeps_no_polarisation() {
     let analyser = Analyser::OBSERVER.reflected(0.3);
     assert_eq!(seen(&analyser, [1.0, 0.5, -0.2, 0.1]), [0.3, 0.0, 0.0]);
 }
+
+#[test]
+fn matrices_a_little_beyond_what_is_possible_are_brought_back() {
+    // Spheres of one size are at the limit, 0.36^2 + 0.48^2 + 0.8^2 = 1.
+    let limit = Scattering::of_spheres(1.0, [0.36, 0.48, 0.8]);
+    let within = limit.possible().expect("possible");
+    assert!((within.b2 - limit.b2).abs() < 1e-15 && (within.a2 - limit.a2).abs() < 1e-15, "{within:?}");
+    let beyond = Scattering::of_spheres(1.0, [0.3618, 0.4824, 0.804]);
+    let back = beyond.possible().expect("nearly possible");
+    // 2 f 1.005 = 1 + f.
+    assert!(
+        (back.a2 - 1.0 / 1.01).abs() < 1e-14 && back.a1 == 1.0 && (back.b1 / back.b2 - 0.45).abs() < 1e-14,
+        "{back:?}"
+    );
+    assert!(Scattering::of_spheres(1.0, [0.9, 0.9, 0.0]).possible().is_none());
+    assert!(Scattering { a2: 0.9, a3: 0.9, a4: -0.5, ..Scattering::depolarising(1.0) }.possible().is_none());
+    for c in [-1.0, -0.3, 0.0, 0.8, 1.0] {
+        for gamma in [0.0, 0.015, 0.5] {
+            let molecules = Scattering::rayleigh(gamma, c);
+            assert!(molecules.possible().is_some_and(|m| (m.a2 - molecules.a2).abs() < 1e-15), "{molecules:?}");
+        }
+    }
+}
