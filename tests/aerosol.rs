@@ -49,6 +49,18 @@ fn every_biome_of_both_sources_has_its_own_optical_depth_in_the_air() {
 }
 
 #[test]
+fn every_biome_of_both_sources_knows_what_it_does_to_polarisation() {
+    // Between the tables' wavelengths and humidities too. Whether a matrix is one of spheres is asked where it is read.
+    for source in AerosolSource::ALL {
+        for biome in Biome::ALL {
+            let air = hazy(source, biome, Amount::Own, None).expect("hazy air");
+            let medium = air.medium(&[312.0, 550.0, 987.0]).expect("a matrix of spheres");
+            assert!(medium.polarises(), "{biome} after {source}");
+        }
+    }
+}
+
+#[test]
 fn optical_depth_and_turbidity_scale_the_amount() {
     let own = hazy(AerosolSource::Opac, Biome::Urban, Amount::Own, None).expect("hazy");
     let own = own.haze().expect("haze").optical_depth();

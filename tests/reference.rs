@@ -8,9 +8,9 @@ use renderer::cases::{Effort, Settings, Tier, read, run};
 use renderer::transport::Method;
 use std::collections::BTreeMap;
 
-/// Answers every case of a file at 1 % (solved tables: those on a sphere, as exactly as they are) and compares: each within 4.5 errors (a false alarm in 3e-4 of all
-/// runs of forty), and together by chi-square within `most`.
-fn agree(file: &str, most: f64) {
+/// Answers every case of a file at 1 % (solved tables: what they offer, as exactly as they are) and compares: each within 4.5 errors (a false alarm in 3e-4 of all
+/// runs of forty), and together by chi-square within `most`. Solved tables refuse with a reason that has `refused` in it.
+fn agree(file: &str, refused: &str, most: f64) {
     let path = root().join("tests/reference").join(file);
     let text: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).expect("read")).expect("JSON");
     let expected: BTreeMap<&str, (f64, f64)> = text["cases"]
@@ -26,15 +26,18 @@ fn agree(file: &str, most: f64) {
     for method in [Method::Judge, Method::Paths, Method::Solved] {
         let settings = Settings { tier: Tier::Full, method, effort: Effort::Error(0.01), seed: 1 };
         let report = run(&suite, &settings, &|_, _| {});
-        let planes = report.refusals.iter().filter(|refusal| refusal.why.contains("round planet")).count();
-        assert!(planes == report.refusals.len() && (planes == 0 || method == Method::Solved), "{:?}", report.refusals);
-        assert_eq!(report.answers.len() + planes, expected.len());
+        let known = report.refusals.iter().all(|refusal| refusal.why.contains(refused));
+        assert!(known && (report.refusals.is_empty() || method == Method::Solved), "{:?}", report.refusals);
+        assert_eq!(report.answers.len() + report.refusals.len(), expected.len());
         let (mut squares, mut largest) = (0.0, 0.0_f64);
         for answer in &report.answers {
             let (value, unc) = expected[answer.id.as_str()];
             let z = (answer.value - value) / answer.stderr.hypot(unc);
             squares += z * z;
-            largest = largest.max((answer.value / value - 1.0).abs());
+            // A U of zero has no relative difference.
+            if value != 0.0 {
+                largest = largest.max((answer.value / value - 1.0).abs());
+            }
             assert!(z.abs() < 4.5, "{method:?}, {}: {} +- {}, must be {value}", answer.id, answer.value, answer.stderr);
         }
         let percent = 100.0 * largest;
@@ -49,11 +52,17 @@ fn agree(file: &str, most: f64) {
 #[test]
 fn radiances_agree_with_discrete_ordinates_and_quadrature() {
     // Chi-square with 20 degrees of freedom exceeds 45 with the probability 1e-3.
-    agree("radiances.json", 45.0);
+    agree("radiances.json", "round planet", 45.0);
 }
 
 #[test]
 fn radiances_agree_with_other_renderers() {
     // Chi-square with 18 degrees of freedom exceeds 42 with the probability 1e-3.
-    agree("renderers.json", 42.0);
+    agree("renderers.json", "round planet", 42.0);
+}
+
+#[test]
+fn stokes_parameters_agree_with_tables_and_a_vector_tracer() {
+    // Chi-square with 26 degrees of freedom exceeds 54 with the probability 1e-3. Scalar transfer is off by up to 11 % there.
+    agree("polarised.json", "carry no polarisation", 54.0);
 }

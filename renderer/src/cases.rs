@@ -3,7 +3,8 @@
 //!
 //! Every quantity is per unit solar irradiance perpendicular to a parallel beam. The sun stands at
 //! azimuth 0 and zenith angle `sza_deg` at the observer's vertical; the view is the
-//! direction looked in, its azimuth counted from the sun's.
+//! direction looked in, its azimuth counted from the sun's. A case whose `polarization` is `vector` gets polarised
+//! transfer: its radiance is I, and `stokes_Q` and `stokes_U` refer to the horizontal (docs/polarisation.md).
 
 mod bounded;
 mod input;
@@ -13,14 +14,14 @@ pub use input::{CasesError, Suite, Tier, parse, read};
 
 use crate::sampling::{POINTS, Sampler};
 use crate::transport::Method;
-use physics::{Estimand, Shared};
+use physics::{Estimand, Sample, Shared};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How much to sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Effort {
-    /// Until the standard error of a case is at most this share of its value.
+    /// Until the standard error of a case is at most this share of its value; of I for a Stokes parameter.
     Error(f64),
     /// That many paths a case.
     Paths(u64),
@@ -142,12 +143,13 @@ fn estimate(id: &str, estimand: &Estimand, settings: &Settings, index: u64) -> A
     }
     let replicates = |moments: &mut Moments, seed: u64, to: u64, points: u64| {
         for replicate in moments.count..to {
-            let mut sum = 0.0;
+            let mut sum = Sample { value: 0.0, scale: 0.0 };
             for point in 0..points {
                 let mut sampler = Sampler::sobol(seed, index, replicate, point as u32);
-                sum += estimand.sample(&mut sampler);
+                let Sample { value, scale } = estimand.sample(&mut sampler);
+                sum = Sample { value: sum.value + value, scale: sum.scale + scale };
             }
-            moments.add(sum / points as f64);
+            moments.add(Sample { value: sum.value / points as f64, scale: sum.scale / points as f64 });
         }
     };
     let mut run = Moments::default();
@@ -168,10 +170,10 @@ fn estimate(id: &str, estimand: &Estimand, settings: &Settings, index: u64) -> A
             let mut target = paths.div_ceil(points).max(REPLICATES);
             loop {
                 replicates(&mut run, settings.seed, target, points);
-                if run.mean == 0.0 && run.count * points >= DARK_PATHS {
+                if run.scale == 0.0 && run.count * points >= DARK_PATHS {
                     break;
                 }
-                let reached = run.mean != 0.0 && run.stderr() <= error * run.mean.abs();
+                let reached = run.scale != 0.0 && run.stderr() <= error * run.scale.abs();
                 if reached || run.count * points >= MOST_PATHS {
                     break;
                 }
@@ -181,24 +183,27 @@ fn estimate(id: &str, estimand: &Estimand, settings: &Settings, index: u64) -> A
         }
     };
     let (relative, absolute) = TABLES;
-    let tables = (relative * run.mean).hypot(absolute * estimand.f0());
+    let tables = (relative * run.scale).hypot(absolute * estimand.f0());
     Answer { id: id.into(), value: run.mean, stderr: run.stderr().hypot(tables), paths: run.count * points }
 }
 
-/// Count, mean and sum of squared deviations (Welford 1962).
+/// Count, means and sum of squared deviations (Welford 1962).
 #[derive(Debug, Clone, Copy, Default)]
 struct Moments {
     count: u64,
     mean: f64,
     squares: f64,
+    /// Mean of what relative errors refer to.
+    scale: f64,
 }
 
 impl Moments {
-    fn add(&mut self, x: f64) {
+    fn add(&mut self, Sample { value, scale }: Sample) {
         self.count += 1;
-        let before = x - self.mean;
+        let before = value - self.mean;
         self.mean += before / self.count as f64;
-        self.squares += before * (x - self.mean);
+        self.squares += before * (value - self.mean);
+        self.scale += (scale - self.scale) / self.count as f64;
     }
 
     fn variance(&self) -> f64 {
@@ -212,10 +217,10 @@ impl Moments {
     /// Samples for a relative standard error, with a tenth to spare; ten times
     /// more if nothing has been seen yet.
     fn needed(&self, error: f64) -> u64 {
-        if self.mean == 0.0 {
+        if self.scale == 0.0 {
             return self.count.saturating_mul(10);
         }
-        (1.1 * self.variance() / (error * self.mean).powi(2)).ceil().min(MOST_PATHS as f64) as u64
+        (1.1 * self.variance() / (error * self.scale).powi(2)).ceil().min(MOST_PATHS as f64) as u64
     }
 }
 

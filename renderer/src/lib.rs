@@ -10,6 +10,7 @@ pub mod film;
 pub mod geometry;
 pub mod light;
 pub mod phase;
+pub mod polarisation;
 pub mod render;
 pub mod sampling;
 pub mod scene;

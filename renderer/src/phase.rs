@@ -5,6 +5,7 @@
 //! samples and the weight of a sample is 1 for the wavelength it was drawn for.
 //! Other wavelengths carried by the same path are weighted by the ratio of values.
 
+use crate::polarisation::{Natural, Scattering};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -38,6 +39,8 @@ pub struct Tabulated<const L: usize> {
     values: Vec<[f64; L]>,
     /// 2 pi times the integral of the values from -1 to each node.
     cumulative: Vec<[f64; L]>,
+    /// Matrices of scattering in sr^-1 at each node, where they are known.
+    matrices: Option<Vec<[Scattering; L]>>,
 }
 
 impl<const L: usize> Tabulated<L> {
@@ -65,7 +68,23 @@ impl<const L: usize> Tabulated<L> {
         for j in 0..L {
             values.iter_mut().chain(&mut cumulative).for_each(|row| row[j] /= total[j]);
         }
-        Some(Self { cosines, values, cumulative })
+        Some(Self { cosines, values, cumulative, matrices: None })
+    }
+
+    /// With the matrices of scattering at each node, over their a1. Between nodes every element is linear as the phase
+    /// function is, so that a matrix there is a mean of two possible ones. `None` if they are not as many as the
+    /// nodes, or not [`Scattering::possible`].
+    #[must_use]
+    pub fn with_matrices(self, mut ratios: Vec<[Scattering; L]>) -> Option<Self> {
+        if ratios.len() != self.cosines.len() {
+            return None;
+        }
+        for (row, values) in ratios.iter_mut().zip(&self.values) {
+            for (matrix, &value) in row.iter_mut().zip(values) {
+                *matrix = matrix.possible()? * value;
+            }
+        }
+        Some(Self { matrices: Some(ratios), ..self })
     }
 
     /// Cosines of the scattering angle at the nodes, from -1 to 1.
@@ -85,6 +104,17 @@ impl<const L: usize> Tabulated<L> {
         let (i, f) = self.locate(c);
         let (a, b) = (&self.values[i], &self.values[i + 1]);
         std::array::from_fn(|j| a[j] + f * (b[j] - a[j]))
+    }
+
+    /// Matrices of scattering; a phase function alone counts as depolarising.
+    #[inline]
+    fn matrices(&self, c: f64) -> [Scattering; L] {
+        let Some(matrices) = &self.matrices else {
+            return self.values(c).map(Scattering::depolarising);
+        };
+        let (i, f) = self.locate(c);
+        let (a, b) = (&matrices[i], &matrices[i + 1]);
+        std::array::from_fn(|j| a[j] * (1.0 - f) + b[j] * f)
     }
 
     fn value(&self, lane: usize, c: f64) -> f64 {
@@ -127,6 +157,34 @@ impl<const L: usize> Phase<L> {
             Self::HenyeyGreenstein { g } => g.map(|g| henyey_greenstein(g, c)),
             Self::Tabulated(table) => table.values(c),
         }
+    }
+
+    /// Whether it knows what it does to polarisation: Henyey-Greenstein functions, and tables of the phase function alone, do not.
+    #[must_use]
+    pub fn has_matrix(&self) -> bool {
+        match self {
+            Self::Rayleigh { .. } => true,
+            Self::HenyeyGreenstein { .. } => false,
+            Self::Tabulated(table) => table.matrices.is_some(),
+        }
+    }
+
+    /// Matrices of scattering in sr^-1 at every wavelength, a1 the value; depolarising where there is none ([`Phase::has_matrix`]).
+    #[must_use]
+    #[inline]
+    pub fn matrices(&self, c: f64) -> [Scattering; L] {
+        match self {
+            Self::Rayleigh { gamma } => gamma.map(|gamma| Scattering::rayleigh(gamma, c)),
+            Self::HenyeyGreenstein { g } => g.map(|g| Scattering::depolarising(henyey_greenstein(g, c))),
+            Self::Tabulated(table) => table.matrices(c),
+        }
+    }
+
+    /// What becomes of natural light at every wavelength: the first columns of [`Phase::matrices`].
+    #[must_use]
+    #[inline]
+    pub fn natural(&self, c: f64) -> [Natural; L] {
+        self.matrices(c).map(|matrix| matrix.natural())
     }
 
     /// Value in sr^-1 at wavelength number `lane`.
@@ -313,6 +371,28 @@ mod tests {
         ] {
             assert!(Tabulated::new(cosines.clone(), values.clone()).is_none(), "{cosines:?}, {values:?}");
         }
+    }
+
+    #[test]
+    fn matrices_go_with_the_phase_function() {
+        let (table, _) = peaked();
+        let nodes = table.cosines().len();
+        let ratios = |row: [f64; 3]| vec![[Scattering::of_spheres(1.0, row)]; nodes];
+        let with = table.clone().with_matrices(ratios([-0.3, 0.8, 0.5])).expect("possible");
+        for c in [-1.0, -0.97, 0.1, 0.95, 0.99995, 1.0] {
+            let p11 = table.value(0, c);
+            let [matrix] = with.matrices(c);
+            let expected = Scattering::of_spheres(p11, [-0.3, 0.8, 0.5].map(|ratio| ratio * p11));
+            let off = matrix + expected * -1.0;
+            // Lines between the same nodes: rounding.
+            for off in [off.a1, off.a2, off.a3, off.a4, off.b1, off.b2] {
+                assert!(off.abs() <= 1e-14 * p11, "{matrix:?} for {expected:?}");
+            }
+            assert_eq!(table.matrices(c), [Scattering::depolarising(p11)]);
+        }
+        assert!(table.clone().with_matrices(ratios([0.9, 0.9, 0.0])).is_none(), "impossible");
+        assert!(table.clone().with_matrices(ratios([0.0; 3])[1..].to_vec()).is_none(), "too few");
+        assert!(table.with_matrices(ratios([f64::NAN, 0.0, 0.0])).is_none(), "no number");
     }
 
     #[test]

@@ -2,11 +2,12 @@
 
 use super::{AirError, Component};
 use crate::phase::{Phase, Tabulated};
+use crate::polarisation::Scattering;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use tables::TableError;
 use tables::units::KM;
-use tables::views::{Aerosol, Origin, REFERENCE_WAVELENGTH_NM, Species};
+use tables::views::{Aerosol, Matrix, Origin, REFERENCE_WAVELENGTH_NM, Species};
 
 /// Koschmieder's constant for a contrast threshold of 2 %: visibility = 3.912 / extinction.
 pub const KOSCHMIEDER: f64 = 3.912;
@@ -137,7 +138,9 @@ impl Haze {
     fn component<const L: usize>(&self, species: &Species, nm: &[f64; L]) -> Result<Component<L>, TableError> {
         let humidity = species.humidity(self.settings.humidity_percent);
         let (mut scattering, mut absorption, mut g) = ([0.0; L], [0.0; L], [0.0; L]);
-        let mut values = vec![[0.0; L]; species.cosines().len()];
+        let count = species.cosines().len();
+        let mut values = vec![[0.0; L]; count];
+        let mut ratios = Some(vec![[Scattering::default(); L]; count]);
         for (lane, &nm) in nm.iter().enumerate() {
             let optics = species.optics(humidity, nm)?;
             scattering[lane] = self.factor * optics.scattering_m2;
@@ -146,13 +149,25 @@ impl Haze {
             for (row, value) in values.iter_mut().zip(optics.phase) {
                 row[lane] = value;
             }
+            match (&mut ratios, species.matrix(humidity, nm)?) {
+                (Some(ratios), Some(Matrix { p12, p33, p34 })) => {
+                    for (i, row) in ratios.iter_mut().enumerate() {
+                        row[lane] = Scattering::of_spheres(1.0, [p12[i], p33[i], p34[i]]);
+                    }
+                }
+                _ => ratios = None,
+            }
         }
         let phase = match self.settings.phase {
             HazePhase::HenyeyGreenstein => Phase::HenyeyGreenstein { g },
             HazePhase::Mie => {
-                let table = Tabulated::new(species.cosines().to_vec(), values).ok_or_else(|| {
-                    TableError::Inconsistent(format!("the phase functions of {:?} are not sound", species.name))
-                })?;
+                let unsound =
+                    |what: &str| TableError::Inconsistent(format!("the {what} of {:?} are not sound", species.name));
+                let mut table =
+                    Tabulated::new(species.cosines().to_vec(), values).ok_or_else(|| unsound("phase functions"))?;
+                if let Some(ratios) = ratios {
+                    table = table.with_matrices(ratios).ok_or_else(|| unsound("scattering matrices"))?;
+                }
                 Phase::Tabulated(Arc::new(table))
             }
         };

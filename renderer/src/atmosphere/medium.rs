@@ -185,6 +185,12 @@ impl<const L: usize> Medium<L> {
         &self.components
     }
 
+    /// Whether every scatterer knows what it does to polarisation ([`Phase::has_matrix`]).
+    #[must_use]
+    pub fn polarises(&self) -> bool {
+        self.components.iter().all(|c| !c.scatters() || c.phase.has_matrix())
+    }
+
     /// Densities of all components in interval `i` at `fraction` of its height.
     #[inline(always)]
     pub(super) fn densities(&self, interval: usize, fraction: f64) -> [f64; MAX_COMPONENTS] {
@@ -274,7 +280,7 @@ impl<const L: usize> Medium<L> {
 
     /// All coefficients at an altitude in m; the nearest end of the medium for what lies outside.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn local_at(&self, altitude_m: f64) -> Local<L> {
         let (interval, fraction) = self.finder.locate(altitude_m);
         self.local_in(interval, fraction)

@@ -5,6 +5,7 @@ use crate::atmosphere::{Columns, Component, Medium, Tolerance};
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::phase::Phase;
+use crate::polarisation::{Frame, Stokes};
 use crate::sampling::{Sampler, cosine_hemisphere};
 use crate::transport::{self, Estimator, FINER, Method, Problem, Resolution, SolveError, Solved};
 use glam::DVec3;
@@ -28,6 +29,8 @@ pub(super) struct Estimand {
     max_orders: Option<u32>,
     place: Place,
     quantity: Quantity,
+    /// Whether transfer is polarised.
+    polarised: bool,
     f0: f64,
 }
 
@@ -62,8 +65,8 @@ impl Pair {
 /// What is asked at the place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Quantity {
-    /// Radiance looked at in a direction.
-    Radiance(DVec3),
+    /// Radiance looked at, or another Stokes parameter of it.
+    Radiance(Look, Parameter),
     /// Irradiance of the beam on a level plane.
     Direct,
     /// Irradiance from everything but the beam on a level plane that faces up.
@@ -72,6 +75,29 @@ enum Quantity {
     Reflected,
     /// Irradiance on a level plane at the top that faces down.
     Upward,
+}
+
+/// A direction looked in, with the unit vector towards growing azimuth, which the direction alone does not tell at the zenith.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Look {
+    direction: DVec3,
+    sideways: DVec3,
+}
+
+/// A Stokes parameter, referred to e1 sideways and e2 towards the zenith: Q is horizontal light less vertical.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Parameter {
+    I,
+    Q,
+    U,
+}
+
+/// One estimate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Sample {
+    pub(super) value: f64,
+    /// What its error is judged by: the radiance for a Stokes parameter, else the value itself.
+    pub(super) scale: f64,
 }
 
 impl Estimand {
@@ -93,7 +119,7 @@ impl Estimand {
     /// The value with its error, if the case is solved rather than sampled.
     pub(super) fn solution(&self) -> Option<(f64, f64)> {
         match (&self.tables, self.quantity) {
-            (Tables::Solved(pair), Quantity::Radiance(direction)) => Some(self.solved(pair, direction)),
+            (Tables::Solved(pair), Quantity::Radiance(look, _)) => Some(self.solved(pair, look.direction)),
             _ => None,
         }
     }
@@ -124,25 +150,35 @@ impl Estimand {
 
     /// One unbiased estimate. A flux is pi times the mean radiance over directions with
     /// the density cos(theta)/pi.
-    pub(super) fn sample(&self, sampler: &mut Sampler) -> f64 {
+    pub(super) fn sample(&self, sampler: &mut Sampler) -> Sample {
         let flux = |facing: DVec3, sampler: &mut Sampler| {
             let [u, v, ..] = sampler.four();
             let direction = cosine_hemisphere(facing, [u, v]);
-            PI * self.radiance(direction, sampler)
+            PI * self.stokes(Look { direction, sideways: direction.any_orthonormal_vector() }, sampler).i
         };
-        match self.quantity {
-            Quantity::Radiance(direction) => self.radiance(direction, sampler),
+        let value = match self.quantity {
+            Quantity::Radiance(look, parameter) => {
+                let Stokes { i, q, u } = self.stokes(look, sampler);
+                let value = match parameter {
+                    Parameter::I => i,
+                    Parameter::Q => q,
+                    Parameter::U => u,
+                };
+                return Sample { value, scale: i };
+            }
             Quantity::Direct => self.direct(),
             Quantity::Diffuse => flux(self.place.up, sampler),
-            // The reflection is an order of its own: see `radiance`.
+            // The reflection is an order of its own: see `stokes`.
             Quantity::Reflected => self.albedo * (self.direct() + flux(self.place.up, sampler)),
             Quantity::Upward => flux(-self.place.up, sampler),
-        }
+        };
+        Sample { value, scale: value }
     }
 
-    fn radiance(&self, direction: DVec3, sampler: &mut Sampler) -> f64 {
+    /// What is seen in a direction; scalar transfer knows only I.
+    fn stokes(&self, Look { direction, sideways }: Look, sampler: &mut Sampler) -> Stokes {
         let (estimator, columns) = match &self.tables {
-            Tables::Solved(pair) => return self.solved(pair, direction).0,
+            Tables::Solved(pair) => return Stokes { i: self.solved(pair, direction).0, ..Stokes::default() },
             Tables::Columns(estimator, columns) => (*estimator, columns),
         };
         let problem = Problem {
@@ -154,8 +190,14 @@ impl Estimand {
             environment: None,
             max_orders: self.max_orders.map(|n| if self.quantity == Quantity::Reflected { n - 1 } else { n }),
         };
-        let [radiance] = transport::radiance(estimator, &problem, self.place, direction, sampler);
-        self.f0 * radiance
+        let mut seen = Stokes::default();
+        if self.polarised {
+            let frame = Frame::new(direction, sideways);
+            [seen] = transport::stokes(estimator, &problem, self.place, direction, frame, sampler);
+        } else {
+            [seen.i] = transport::radiance(estimator, &problem, self.place, direction, sampler);
+        }
+        Stokes { i: self.f0 * seen.i, q: self.f0 * seen.q, u: self.f0 * seen.u }
     }
 }
 
@@ -242,8 +284,16 @@ pub(super) fn prepare(
     shared: &Shared,
     method: Method,
 ) -> Result<Estimand, String> {
-    if !matches!(case.polarization.as_str(), "scalar" | "any") {
-        return Err("polarised transfer is not offered yet: scalar cases only".into());
+    let stokes = case.quantity.starts_with("stokes_");
+    let polarised = match case.polarization.as_str() {
+        "vector" => true,
+        "any" => stokes,
+        "scalar" if stokes => return Err("scalar transfer has no Stokes parameters".into()),
+        "scalar" => false,
+        other => return Err(format!("polarization {other:?} is neither scalar, vector nor any")),
+    };
+    if polarised && method == Method::Solved {
+        return Err("solved tables carry no polarisation: take paths or the judge".into());
     }
     let max_orders = match case.orders.as_str() {
         "all" => None,
@@ -258,6 +308,9 @@ pub(super) fn prepare(
     ranged("albedo", case.albedo, 0.0, 1.0)?;
     ranged("F0", case.f0, 0.0, f64::MAX)?;
     let (shape, medium) = air(case, profiles)?;
+    if polarised && !medium.polarises() {
+        return Err("a phase function hg has no scattering matrix, so no polarised transfer".into());
+    }
     // A flux is that of the place in its name.
     let altitude_m = match (case.quantity.as_str(), case.observer.as_str(), case.observer_alt_km) {
         ("flux_up_top", ..) => medium.top_m(),
@@ -270,7 +323,9 @@ pub(super) fn prepare(
     ranged("observer_alt_km", altitude_m / KM, 0.0, 1e9)?;
     let (sin, cos) = case.sza_deg.to_radians().sin_cos();
     let quantity = match case.quantity.as_str() {
-        "radiance" => Quantity::Radiance(view(case)?),
+        "radiance" | "stokes_I" => Quantity::Radiance(view(case)?, Parameter::I),
+        "stokes_Q" => Quantity::Radiance(view(case)?, Parameter::Q),
+        "stokes_U" => Quantity::Radiance(view(case)?, Parameter::U),
         "flux_down_direct_ground" => Quantity::Direct,
         "flux_down_diffuse_ground" => Quantity::Diffuse,
         "flux_up_ground" => Quantity::Reflected,
@@ -283,7 +338,7 @@ pub(super) fn prepare(
             if max_orders.is_some_and(|orders| orders > 1) {
                 return Err("a solved table has one order or all".into());
             }
-            if !matches!(quantity, Quantity::Radiance(_)) {
+            if !matches!(quantity, Quantity::Radiance(..)) {
                 return Err("solved tables answer radiances".into());
             }
             Tables::Solved(shared.solved(case).ok_or("solved tables need a round planet")?)
@@ -298,11 +353,12 @@ pub(super) fn prepare(
         max_orders,
         place: Place::above(altitude_m),
         quantity,
+        polarised,
         f0: case.f0,
     })
 }
 
-fn view(case: &Case) -> Result<DVec3, String> {
+fn view(case: &Case) -> Result<Look, String> {
     let zenith = case.view_zenith_deg.ok_or("a radiance needs view_zenith_deg")?;
     let azimuth = case.view_dphi_deg.ok_or("a radiance needs view_dphi_deg")?;
     ranged("view_zenith_deg", zenith, 0.0, 180.0)?;
@@ -312,7 +368,10 @@ fn view(case: &Case) -> Result<DVec3, String> {
     }
     let (sin, cos) = zenith.to_radians().sin_cos();
     let (sin_azimuth, cos_azimuth) = azimuth.to_radians().sin_cos();
-    Ok(DVec3::new(sin * cos_azimuth, sin * sin_azimuth, cos))
+    Ok(Look {
+        direction: DVec3::new(sin * cos_azimuth, sin * sin_azimuth, cos),
+        sideways: DVec3::new(-sin_azimuth, cos_azimuth, 0.0),
+    })
 }
 
 fn ranged(name: &str, value: f64, low: f64, high: f64) -> Result<(), String> {

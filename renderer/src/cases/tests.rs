@@ -72,7 +72,8 @@ fn one_order_of_reflection_is_of_the_beam_alone() {
 fn what_is_not_offered_is_refused_with_a_reason() {
     let radiance = r#""quantity": "radiance", "geometry": "plane-parallel", "observer": "ground", "layers": [{"tau": 0.3, "ssa": 1.0, "phase": [[1.0, "rayleigh", 0.0]]}]"#;
     let cases = [
-        case("vector", &format!(r#""polarization": "vector", {radiance}"#)),
+        case("vector", &format!(r#""polarization": "vector", {}"#, radiance.replace("rayleigh", "hg"))),
+        case("stokes", &format!(r#""polarization": "scalar", {}"#, radiance.replace("\"radiance\"", "\"stokes_Q\""))),
         case("phase", &radiance.replace("rayleigh", "mie")),
         case("ssa", &radiance.replace(r#""ssa": 1.0"#, r#""ssa": 1.5"#)),
         case(
@@ -83,7 +84,9 @@ fn what_is_not_offered_is_refused_with_a_reason() {
     ];
     let report = answer(&cases.join(","), Effort::Paths(10));
     assert_eq!(report.answers, []);
-    for (refusal, word) in report.refusals.iter().zip(["polarised", "mie", "ssa", "none", "colour"]) {
+    for (refusal, word) in
+        report.refusals.iter().zip(["no scattering matrix", "no Stokes", "mie", "ssa", "none", "colour"])
+    {
         assert!(refusal.why.contains(word), "{}: {:?} does not say {word:?}", refusal.id, refusal.why);
     }
 }

@@ -214,7 +214,7 @@ pub(super) struct AerosolArgs {
 /// Flags of `airlight radiance`.
 #[derive(Debug, Args)]
 pub(super) struct RadianceArgs {
-    /// Cases: JSON
+    /// Cases: JSON; those whose `polarization` is `vector` get polarised transfer
     #[arg(value_name = "CASES.json")]
     pub cases: PathBuf,
     /// Answers to write: CSV with id,value,stderr
@@ -226,7 +226,7 @@ pub(super) struct RadianceArgs {
     /// Solved tables, paths on column tables, or the brute-force judge
     #[arg(long, value_name = "METHOD", default_value = "paths")]
     pub method: MethodName,
-    /// Standard error of each case relative to its value, 1e-5 to 1: 1% or 0.01 [default: 1%]
+    /// Standard error of each case relative to its value (of Q and U to I), 1e-5 to 1: 1% or 0.01 [default: 1%]
     #[arg(long, value_name = "E", value_parser = share, conflicts_with = "spp")]
     pub error: Option<f64>,
     /// Paths for each case instead, 2 or more
@@ -252,13 +252,13 @@ pub(super) struct BenchArgs {
     /// Estimator of the anchors [default: paths and certified]
     #[arg(long, value_name = "METHOD")]
     pub method: Option<BenchMethod>,
-    /// Paths in each direction beside solved tables
+    /// Paths in each direction beside solved tables, or of polarised and of scalar transfer
     #[arg(long, value_name = "N", default_value_t = 8192)]
     pub paths: u64,
     /// Folder with the tables
     #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
-    /// Biomes beside which solved tables are put: one, or all
+    /// Biomes beside which solved tables are put, or in which polarised transfer is measured: one, none or all
     #[arg(long, value_name = "NAME", default_value = "all")]
     pub biome: String,
     /// Least time for each direction in seconds
@@ -282,6 +282,8 @@ pub(super) enum BenchName {
     Anchors,
     /// Solved tables of clear air and of every biome beside the path tracer
     Solved,
+    /// Polarised beside scalar transfer in clear air and in every biome
+    Polarised,
 }
 
 /// Flags of `airlight study`.

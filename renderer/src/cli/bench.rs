@@ -6,6 +6,7 @@ use super::{Failure, Outcome};
 use crate::atmosphere::{Columns, Medium};
 use crate::bench;
 use crate::data::Data;
+use crate::sampling::POINTS;
 use crate::scene::SceneError;
 use crate::transport::Estimator;
 use std::time::Instant;
@@ -15,16 +16,13 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, Failure> {
     match args.what {
         BenchName::Anchors => anchors(args),
         BenchName::Solved => solved(args),
+        BenchName::Polarised => polarised(args),
     }
 }
 
-/// Zenith angles of the sun in degrees beside which solved tables are put.
-const SUNS: [f64; 5] = [60.0, 85.0, 90.0, 92.0, 95.0];
-
-fn solved(args: &BenchArgs) -> Result<Outcome, Failure> {
-    let data = Data::load(&args.data).map_err(Failure::error)?;
+/// The biomes that are asked for; `None` is clear air.
+fn biomes(args: &BenchArgs) -> Result<Vec<Option<Biome>>, Failure> {
     let all = std::iter::once(None).chain(Biome::ALL.into_iter().map(Some));
-    let name = |biome: Option<Biome>| biome.map_or("none", Biome::name);
     let asked: Vec<_> = all.filter(|&biome| args.biome == "all" || args.biome == name(biome)).collect();
     if asked.is_empty() {
         return Err(Failure::error(SceneError::Refused(format!(
@@ -32,12 +30,63 @@ fn solved(args: &BenchArgs) -> Result<Outcome, Failure> {
             args.biome
         ))));
     }
+    Ok(asked)
+}
+
+fn name(biome: Option<Biome>) -> &'static str {
+    biome.map_or("none", Biome::name)
+}
+
+/// Wavelengths in nm of polarised transfer: one, and sixteen over what is seen.
+const ONE: [f64; 1] = [450.0];
+
+fn polarised(args: &BenchArgs) -> Result<Outcome, Failure> {
+    let data = Data::load(&args.data).map_err(Failure::error)?;
+    let sixteen: [f64; 16] = std::array::from_fn(|i| 380.0 + 400.0 * i as f64 / 15.0);
+    let points = u32::try_from(args.paths / 32).unwrap_or(u32::MAX).clamp(1, POINTS as u32);
+    println!("one thread; noise as variance, at equal paths");
+    let pool = super::pool(Some(1))?;
+    for biome in biomes(args)? {
+        let one = bench::polarised::medium(&data, biome, &ONE).map_err(Failure::error)?;
+        let many = bench::polarised::medium(&data, biome, &sixteen).map_err(Failure::error)?;
+        println!("{}", name(biome));
+        for sun in [30.0, 60.0, 85.0, 92.0] {
+            let one = pool.install(|| bench::polarised::measure(&one, sun, points));
+            print_polarised(sun, "at 450 nm", &one);
+            let many = pool.install(|| bench::polarised::measure(&many, sun, points));
+            print_polarised(sun, "at 16 wavelengths", &many);
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+fn print_polarised(sun: f64, wavelengths: &str, report: &bench::polarised::Report) {
+    let [scalar, i, qu] = report.variance;
+    println!(
+        "  sun zenith {sun:>2} {wavelengths:17}  {:6.2} us a path for {:6.2}  noise of I {:.2} times, of Q and U {:.2} times  cost {:.2} times  \
+         polarised {:4.1} %  scalar {:+.1} to {:+.1} %",
+        1e6 * report.seconds[1],
+        1e6 * report.seconds[0],
+        i / scalar,
+        qu / scalar,
+        report.cost(),
+        100.0 * report.degree,
+        100.0 * report.scalar.0,
+        100.0 * report.scalar.1
+    );
+}
+
+/// Zenith angles of the sun in degrees beside which solved tables are put.
+const SUNS: [f64; 5] = [60.0, 85.0, 90.0, 92.0, 95.0];
+
+fn solved(args: &BenchArgs) -> Result<Outcome, Failure> {
+    let data = Data::load(&args.data).map_err(Failure::error)?;
     println!(
         "16 wavelengths, {} threads; beside {} paths in each of 54 directions",
         rayon::current_num_threads(),
         args.paths
     );
-    for biome in asked {
+    for biome in biomes(args)? {
         let report = bench::solved::measure(&data, biome, &SUNS, args.paths).map_err(Failure::error)?;
         println!(
             "{}: solved in {:.2} s ({:.2} s with a coarser one), {} orders, {:.1} MB; a picture of 320 x 320 {:.2} core-s",

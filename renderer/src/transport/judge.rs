@@ -3,25 +3,26 @@
 
 use super::Problem;
 use super::carried::{Carried, SURVIVAL};
+use super::radiation::Radiation;
 use super::ratio::{self, exponential};
-use super::scatter::{mixture, scatter};
+use super::scatter::{Towards, scatter};
 use crate::atmosphere::Local;
 use crate::geometry::{End, Place, Ray, Segment};
 use crate::sampling::{Sampler, cosine_hemisphere};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// Radiance along one path.
-pub(super) fn trace<const L: usize>(
+/// What is seen along one path, in `frame`.
+pub(super) fn trace<R: Radiation, const L: usize>(
     problem: &Problem<'_, L>,
     from: Place,
-    direction: DVec3,
+    (direction, frame): (DVec3, R::Frame),
     hero: usize,
     sampler: &mut Sampler,
-) -> [f64; L] {
+) -> [R::Seen; L] {
     let medium = problem.medium;
-    let mut sum = [0.0; L];
-    let mut carried = Carried::new();
+    let mut sum = [R::Seen::default(); L];
+    let mut carried = Carried::<R, L>::new(frame);
     let (mut place, mut direction) = (from, direction);
     let mut segments = Vec::with_capacity(2 * medium.shells().len());
     let mut first_weight = None;
@@ -38,8 +39,11 @@ pub(super) fn trace<const L: usize>(
                 place = place.advance(problem.shape, direction, t);
                 place.altitude_m = place.altitude_m.clamp(0.0, medium.top_m());
                 if let Some((sun, light)) = sunlight(problem, place, &mut segments, sampler) {
-                    let phase = mixture(medium, &local, direction.dot(sun));
-                    carried.score(&mut sum, |j| phase[j] * light[j]);
+                    let scattered = Towards::<R, L>::new(medium, direction.dot(sun)).at(&local);
+                    let turn = carried.turn(direction, sun);
+                    carried.score_scattered(&mut sum, turn, &scattered, |j| {
+                        if local.scattering[j] > 0.0 { light[j] / local.scattering[j] } else { 0.0 }
+                    });
                 }
                 match scatter(medium, &local, hero, direction, &mut carried, sampler.uniform_2d()) {
                     Some(scattered) => direction = scattered,
@@ -49,7 +53,7 @@ pub(super) fn trace<const L: usize>(
             Outcome::Ground(t) => {
                 place = place.advance(problem.shape, direction, t);
                 place.altitude_m = 0.0;
-                carried.multiply(|j| problem.albedo[j], |_| 1.0);
+                carried.reflect(&problem.albedo);
                 if let Some((sun, light)) = sunlight(problem, place, &mut segments, sampler) {
                     let cosine = place.up.dot(sun).max(0.0);
                     carried.score(&mut sum, |j| FRAC_1_PI * cosine * light[j]);
@@ -118,12 +122,12 @@ enum Outcome<const L: usize> {
 /// j share the factor exp(-majorant_j x distance). A scattering multiplies
 /// both by sigma_s,j, a null collision both by majorant_j - sigma_t,j; so f_j and r_j
 /// stay equal as long as the path flies.
-fn fly<const L: usize>(
+fn fly<R: Radiation, const L: usize>(
     problem: &Problem<'_, L>,
     track: &Track<'_>,
     hero: usize,
-    carried: &mut Carried<L>,
-    escaped: &mut [f64; L],
+    carried: &mut Carried<R, L>,
+    escaped: &mut [R::Seen; L],
     sampler: &mut Sampler,
 ) -> Outcome<L> {
     let mut depth = [0.0; L];

@@ -14,6 +14,7 @@
 mod carried;
 mod judge;
 mod paths;
+mod radiation;
 mod ratio;
 mod scatter;
 mod solved;
@@ -21,8 +22,10 @@ mod solved;
 use crate::atmosphere::{Columns, Medium};
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
+use crate::polarisation::{Frame, Stokes};
 use crate::sampling::Sampler;
 use glam::DVec3;
+use radiation::{Polarised, Radiation, Scalar};
 pub use solved::{Certificate, Certified, FINER, Fan, Panorama, Resolution, SolveError, Solved, Tables};
 
 use serde::{Deserialize, Serialize};
@@ -94,11 +97,35 @@ pub fn radiance<const L: usize>(
     direction: DVec3,
     sampler: &mut Sampler,
 ) -> [f64; L] {
+    trace::<Scalar, L>(estimator, problem, from, (direction, ()), sampler)
+}
+
+/// As [`radiance`], its Stokes parameters in `frame`. Phase functions without a matrix count as depolarising: who wants none asks
+/// [`Medium::polarises`] before.
+#[must_use]
+pub fn stokes<const L: usize>(
+    estimator: Estimator,
+    problem: &Problem<'_, L>,
+    from: Place,
+    direction: DVec3,
+    frame: Frame,
+    sampler: &mut Sampler,
+) -> [Stokes; L] {
+    trace::<Polarised, L>(estimator, problem, from, (direction, frame), sampler)
+}
+
+fn trace<R: Radiation, const L: usize>(
+    estimator: Estimator,
+    problem: &Problem<'_, L>,
+    from: Place,
+    look: (DVec3, R::Frame),
+    sampler: &mut Sampler,
+) -> [R::Seen; L] {
     sampler.go_to(1);
     let hero = ((sampler.four()[0] * L as f64) as usize).min(L - 1);
     match estimator {
-        Estimator::Judge => judge::trace(problem, from, direction, hero, sampler),
-        Estimator::Paths => paths::trace(problem, from, direction, hero, sampler),
+        Estimator::Judge => judge::trace::<R, L>(problem, from, look, hero, sampler),
+        Estimator::Paths => paths::trace::<R, L>(problem, from, look, hero, sampler),
     }
 }
 

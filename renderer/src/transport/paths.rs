@@ -6,6 +6,7 @@
 
 use super::Problem;
 use super::carried::{Carried, SURVIVAL};
+use super::radiation::{Linear, Radiation};
 use super::scatter::{Lobe, Towards, scatter, scatter_with_lobe};
 use crate::atmosphere::Chord;
 use crate::geometry::{Place, Shape};
@@ -25,16 +26,16 @@ const DAY: u32 = 2;
 /// Nodes on each line where the sun is low.
 const LOW: u32 = 8;
 
-/// Radiance along one path.
-pub(super) fn trace<const L: usize>(
+/// What is seen along one path, in `frame`.
+pub(super) fn trace<R: Radiation, const L: usize>(
     problem: &Problem<'_, L>,
     from: Place,
-    direction: DVec3,
+    (direction, frame): (DVec3, R::Frame),
     hero: usize,
     sampler: &mut Sampler,
-) -> [f64; L] {
-    let mut sum = [0.0; L];
-    let mut carried = Carried::new();
+) -> [R::Seen; L] {
+    let mut sum = [R::Seen::default(); L];
+    let mut carried = Carried::<R, L>::new(frame);
     let (mut place, mut direction) = (from, direction);
     let mut first_weight = None;
     let mut order = 0_u32;
@@ -83,7 +84,7 @@ pub(super) fn trace<const L: usize>(
             None => break,
             Some(Vertex::Ground) => {
                 place = chord.foot(place, direction);
-                carried.multiply(|j| problem.albedo[j], |_| 1.0);
+                carried.reflect(&problem.albedo);
                 direction = cosine_hemisphere(place.up, [angle, turn]);
             }
             Some(Vertex::Air(s)) => {
@@ -94,8 +95,9 @@ pub(super) fn trace<const L: usize>(
                     && let Some((sun, light)) = &sun
                     && let Some(through) = problem.columns.transmittance(place, *sun)
                 {
-                    let scattered = Towards::new(problem.medium, direction.dot(*sun)).at(&local);
-                    carried.score(&mut sum, |j| scattered[j] * light[j] * through[j]);
+                    let scattered = Towards::<R, L>::new(problem.medium, direction.dot(*sun)).at(&local);
+                    let turn = carried.turn(direction, *sun);
+                    carried.score_scattered(&mut sum, turn, &scattered, |j| light[j] * through[j]);
                 }
                 carried.multiply(|j| local.scattering[j], |_| 1.0);
                 let scattered = match sunward(place, sun.map(|(sun, _)| sun)) {
@@ -127,7 +129,7 @@ pub(super) fn trace<const L: usize>(
 }
 
 /// Where the light is when the sun is low: along the horizon below which it has gone.
-#[inline]
+#[inline(always)]
 fn sunward(place: Place, sun: Option<DVec3>) -> Option<Lobe> {
     let sun = sun?;
     let sine = place.up.dot(sun);
@@ -151,13 +153,13 @@ enum Vertex {
 /// In the air the distance has the density sigma_j(s) exp(-tau_j(s)) / (1 - exp(-tau_j)), inverted for the hero;
 /// the contribution gets exp(-tau_j(s)), the scattering coefficient is left to the vertex.
 #[inline]
-fn fly<const L: usize>(
+fn fly<R: Radiation, const L: usize>(
     chord: &Chord<'_, L>,
     total: &[f64; L],
     reflects: bool,
     hero: usize,
     u: f64,
-    carried: &mut Carried<L>,
+    carried: &mut Carried<R, L>,
 ) -> Option<Vertex> {
     let collision = total.map(|depth| -(-depth).exp_m1());
     let mut probability = [1.0; L];
@@ -187,7 +189,7 @@ fn fly<const L: usize>(
 }
 
 /// Whether the sun is low ([`LOW_SUN`]) at an end of a chord.
-#[inline]
+#[inline(always)]
 fn sun_is_low<const L: usize>(shape: Shape, chord: &Chord<'_, L>, place: Place, direction: DVec3, sun: DVec3) -> bool {
     let Shape::Sphere { radius_m } = shape else { return false };
     let (from, to) = chord.ends();
@@ -214,18 +216,19 @@ struct Quadrature {
 /// q_j(s) = sigma_j exp(-tau_j) / M_j, M_j the integral of the numerator; the hero's is
 /// taken, and weighted by the balance heuristic like everything else.
 #[inline]
-fn line<const L: usize>(
+fn line<R: Radiation, const L: usize>(
     problem: &Problem<'_, L>,
     chord: &Chord<'_, L>,
     (place, direction): (Place, DVec3),
     (sun, light): (DVec3, &[f64; L]),
     quadrature: Quadrature,
-    carried: &Carried<L>,
-    sum: &mut [f64; L],
+    carried: &Carried<R, L>,
+    sum: &mut [R::Seen; L],
 ) {
     let (stretches, count) = lit(problem.shape, chord, place, direction, sun);
-    let sight =
-        Sight { problem, chord, place, direction, sun, towards: Towards::new(problem.medium, direction.dot(sun)) };
+    let towards = Towards::<R, L>::new(problem.medium, direction.dot(sun));
+    let sight = Sight { problem, chord, place, direction, sun, towards };
+    let turn = carried.turn(direction, sun);
     let share = 1.0 / f64::from(quadrature.nodes);
     let quantiles = (0..quadrature.nodes).map(|i| (f64::from(i) + quadrature.comb) * share);
     if quadrature.low {
@@ -234,7 +237,8 @@ fn line<const L: usize>(
             let (s, density) = guide.sample(u);
             if let Some(Seen { scattered, through }) = sight.at(s) {
                 let arrives = sight.arrives(s);
-                carried.score(sum, |j| share * arrives[j] * scattered[j] * light[j] * through[j] / density);
+                carried
+                    .score_scattered(sum, turn, &scattered, |j| share * arrives[j] * light[j] * through[j] / density);
             }
         }
         return;
@@ -264,34 +268,33 @@ fn line<const L: usize>(
         if density[hero] <= 0.0 {
             continue;
         }
-        let mut carried = *carried;
-        carried.multiply(|j| arrives[j] * scattered[j] / density[hero], |j| density[j] / density[hero]);
-        carried.score(sum, |j| share * light[j] * through[j]);
+        let arrives = |j: usize| arrives[j] / density[hero] * share * light[j] * through[j];
+        carried.score_drawn(sum, turn, &scattered, arrives, |j| density[j] / density[hero]);
     }
 }
 
 /// A chord looked along, with the sun somewhere.
-struct Sight<'a, const L: usize> {
+struct Sight<'a, R: Radiation, const L: usize> {
     problem: &'a Problem<'a, L>,
     chord: &'a Chord<'a, L>,
     place: Place,
     direction: DVec3,
     sun: DVec3,
-    towards: Towards<L>,
+    towards: Towards<R, L>,
 }
 
 /// What a point of a chord sends along it.
-struct Seen<const L: usize> {
-    /// Scattering coefficient times phase function.
-    scattered: [f64; L],
+struct Seen<R: Radiation, const L: usize> {
+    /// Scattering coefficient times what scattering makes of natural light.
+    scattered: [R::Natural; L],
     /// Transmittance to the sun.
     through: [f64; L],
 }
 
-impl<const L: usize> Sight<'_, L> {
+impl<R: Radiation, const L: usize> Sight<'_, R, L> {
     /// `None` if the planet hides the sun.
     #[inline]
-    fn at(&self, s: f64) -> Option<Seen<L>> {
+    fn at(&self, s: f64) -> Option<Seen<R, L>> {
         let there = self.chord.place(self.place, self.direction, s);
         let through = self.problem.columns.transmittance(there, self.sun)?;
         Some(Seen { scattered: self.towards.at(&self.problem.medium.local_at(there.altitude_m)), through })
@@ -322,7 +325,7 @@ const LEAST: f64 = 0.05;
 
 impl Guide {
     /// `None` if no light comes from anywhere.
-    fn new<const L: usize>(sight: &Sight<'_, L>, stretches: &[(f64, f64)]) -> Option<Self> {
+    fn new<R: Radiation, const L: usize>(sight: &Sight<'_, R, L>, stretches: &[(f64, f64)]) -> Option<Self> {
         let mut guide =
             Self { places: [0.0; GUIDE_POINTS], densities: [0.0; GUIDE_POINTS], below: [0.0; GUIDE_POINTS], count: 0 };
         let mut light = [[0.0; L]; GUIDE_POINTS];
@@ -334,7 +337,7 @@ impl Guide {
                 guide.places[at] = s;
                 if let Some(Seen { scattered, through }) = sight.at(s) {
                     let arrives = sight.arrives(s);
-                    light[at] = std::array::from_fn(|j| arrives[j] * scattered[j] * through[j]);
+                    light[at] = std::array::from_fn(|j| arrives[j] * scattered[j].intensity() * through[j]);
                 }
                 guide.count += 1;
             }
@@ -381,7 +384,7 @@ impl Guide {
 }
 
 /// The place at share `t` of a stretch, closer together where it is low: uniform in the root of the height above its lowest point.
-#[inline]
+#[inline(always)]
 fn spread<const L: usize>(chord: &Chord<'_, L>, from: f64, to: f64, t: f64) -> f64 {
     if t <= 0.0 {
         return from;
@@ -400,14 +403,14 @@ fn spread<const L: usize>(chord: &Chord<'_, L>, from: f64, to: f64, t: f64) -> f
 }
 
 /// exp(-a) - exp(-b) without cancellation.
-#[inline]
+#[inline(always)]
 fn between(a: f64, b: f64) -> f64 {
     -(-a).exp() * (a - b).min(0.0).exp_m1()
 }
 
 /// The stretches of a chord outside the planet's shadow: at most two, for the shadow is convex. A hair of the shadow is
 /// counted as light, so that rounding loses none; what is dark there finds the planet in the way.
-#[inline]
+#[inline(always)]
 fn lit<const L: usize>(
     shape: Shape,
     chord: &Chord<'_, L>,

@@ -1,53 +1,62 @@
 //! Scattering by the mixture of species at a point.
 
 use super::carried::Carried;
+use super::radiation::{Linear, Radiation};
 use crate::atmosphere::{Component, Local, MAX_COMPONENTS, Medium};
 use crate::phase::Phase;
 use crate::sampling::around;
 use glam::DVec3;
 
-/// Phase functions in sr^-1 of all species for one angle, times their scattering cross-sections: along a line the
-/// angle to the sun does not change.
-pub(super) struct Towards<const L: usize> {
-    parts: [[f64; L]; MAX_COMPONENTS],
+/// What scattering by each species makes of natural light at one angle, in sr^-1, times their scattering cross-sections: along a
+/// line the angle to the sun does not change.
+pub(super) struct Towards<R: Radiation, const L: usize> {
+    parts: [[R::Natural; L]; MAX_COMPONENTS],
     count: usize,
 }
 
-impl<const L: usize> Towards<L> {
+impl<R: Radiation, const L: usize> Towards<R, L> {
     /// For the scattering angle of that cosine.
     #[inline]
     pub(super) fn new(medium: &Medium<L>, cosine: f64) -> Self {
-        let mut parts = [[0.0; L]; MAX_COMPONENTS];
+        let mut parts = [[R::Natural::default(); L]; MAX_COMPONENTS];
         for (part, component) in parts.iter_mut().zip(medium.components()) {
             if component.scatters() {
-                let phase = component.phase.values(cosine);
-                for ((part, sigma), phase) in part.iter_mut().zip(&component.scattering).zip(phase) {
-                    *part = sigma * phase;
+                let phase = R::natural(&component.phase, cosine);
+                for ((part, &sigma), phase) in part.iter_mut().zip(&component.scattering).zip(phase) {
+                    *part = phase * sigma;
                 }
             }
         }
         Self { parts, count: medium.components().len() }
     }
 
-    /// Scattering coefficient times the phase function of the mixture in m^-1 sr^-1.
+    /// Scattering coefficient times what scattering by the mixture makes of natural light, in m^-1 sr^-1.
     #[inline]
-    pub(super) fn at(&self, local: &Local<L>) -> [f64; L] {
-        let mut sum = [0.0; L];
+    pub(super) fn at(&self, local: &Local<L>) -> [R::Natural; L] {
+        let mut sum = [R::Natural::default(); L];
         for (part, density) in self.parts[..self.count].iter().zip(local.densities) {
-            for (sum, part) in sum.iter_mut().zip(part) {
-                *sum += density * part;
+            for (sum, &part) in sum.iter_mut().zip(part) {
+                *sum = *sum + part * density;
             }
         }
         sum
     }
 }
 
-/// Phase function of the mixture at a point in sr^-1: sum_s sigma_s p_s(c) / sum_s sigma_s over the scattering species.
+/// Matrix of scattering of the mixture at a point in sr^-1: sum_s sigma_s P_s(c) / sum_s sigma_s over the scattering species.
 #[inline]
-pub(super) fn mixture<const L: usize>(medium: &Medium<L>, local: &Local<L>, cosine: f64) -> [f64; L] {
-    let mut sum = Towards::new(medium, cosine).at(local);
+fn mixture<R: Radiation, const L: usize>(medium: &Medium<L>, local: &Local<L>, cosine: f64) -> [R::Matrix; L] {
+    let mut sum = [R::Matrix::default(); L];
+    for (component, density) in medium.components().iter().zip(local.densities) {
+        if component.scatters() {
+            let matrices = R::matrices(&component.phase, cosine);
+            for ((sum, matrix), &sigma) in sum.iter_mut().zip(matrices).zip(&component.scattering) {
+                *sum = *sum + matrix * (sigma * density);
+            }
+        }
+    }
     for (sum, scattering) in sum.iter_mut().zip(local.scattering) {
-        *sum = if scattering > 0.0 { *sum / scattering } else { 0.0 };
+        *sum = *sum * if scattering > 0.0 { scattering.recip() } else { 0.0 };
     }
     sum
 }
@@ -70,13 +79,13 @@ impl Lobe {
 
 /// As [`scatter`], but a direction is drawn from the lobe with its share; both densities count, whichever drew it.
 #[inline]
-pub(super) fn scatter_with_lobe<const L: usize>(
+pub(super) fn scatter_with_lobe<R: Radiation, const L: usize>(
     medium: &Medium<L>,
     local: &Local<L>,
     hero: usize,
     direction: DVec3,
     lobe: Lobe,
-    carried: &mut Carried<L>,
+    carried: &mut Carried<R, L>,
     [u, turn]: [f64; 2],
 ) -> Option<DVec3> {
     let shape = Lobe::shape::<1>();
@@ -87,13 +96,14 @@ pub(super) fn scatter_with_lobe<const L: usize>(
         let (component, rest) = choose(medium, local, hero, rest)?;
         around(direction, component.phase.sample(hero, rest).cosine, turn)
     };
-    let phase = mixture(medium, local, direction.dot(scattered).clamp(-1.0, 1.0));
+    let matrices = mixture::<R, L>(medium, local, direction.dot(scattered).clamp(-1.0, 1.0));
     let tried = shape.value(0, lobe.axis.dot(scattered).clamp(-1.0, 1.0));
-    let density = phase.map(|phase| Lobe::SHARE * tried + (1.0 - Lobe::SHARE) * phase);
-    if density[hero] <= 0.0 {
+    let density = |j: usize| Lobe::SHARE * tried + (1.0 - Lobe::SHARE) * matrices[j].intensity();
+    let drawn = density(hero);
+    if drawn <= 0.0 {
         return None;
     }
-    carried.multiply(|j| phase[j] / density[hero], |j| density[j] / density[hero]);
+    carried.scatter(direction, scattered, &matrices, density, drawn);
     Some(scattered)
 }
 
@@ -122,23 +132,25 @@ fn choose<'a, const L: usize>(
 
 /// Draws the direction after a scattering: a species by the hero's coefficients, an angle by its phase function. `u` in
 /// [0, 1) chooses the species and, stretched, the angle; `turn` the azimuth. The density of the
-/// direction is the hero's mixture, which is its phase function too; other wavelengths get the ratio of theirs
-/// to it, in contribution and density alike. `None` where rounding has drawn an angle of no density.
+/// direction is the phase function of the hero's mixture; other wavelengths get the ratio of theirs
+/// to it, and contributions the matrix of each over it. `None` where rounding has drawn an angle of no density.
 #[inline]
-pub(super) fn scatter<const L: usize>(
+pub(super) fn scatter<R: Radiation, const L: usize>(
     medium: &Medium<L>,
     local: &Local<L>,
     hero: usize,
     direction: DVec3,
-    carried: &mut Carried<L>,
+    carried: &mut Carried<R, L>,
     [u, turn]: [f64; 2],
 ) -> Option<DVec3> {
     let (component, rest) = choose(medium, local, hero, u)?;
     let sample = component.phase.sample(hero, rest);
-    let phase = mixture(medium, local, sample.cosine);
-    if phase[hero] <= 0.0 {
+    let matrices = mixture::<R, L>(medium, local, sample.cosine);
+    let drawn = matrices[hero].intensity();
+    if drawn <= 0.0 {
         return None;
     }
-    carried.multiply_both(|j| phase[j] / phase[hero]);
-    Some(around(direction, sample.cosine, turn))
+    let scattered = around(direction, sample.cosine, turn);
+    carried.scatter(direction, scattered, &matrices, |j| matrices[j].intensity(), drawn);
+    Some(scattered)
 }

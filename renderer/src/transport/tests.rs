@@ -392,3 +392,5 @@ fn an_empty_ray_gives_no_light() {
         assert_eq!(found, [0.0; 4], "{method:?} found light in empty space");
     }
 }
+
+mod polarised;
