@@ -7,6 +7,7 @@ use super::progress::{amount, duration, percent, size};
 use crate::film::{DiscLayer, Estimate, Picture, exr, png, tone};
 use crate::render::{Head, Part, Rendering, Shard, Sky, State, Summary, Verdict, receipt};
 use crate::scene::Scene;
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -86,7 +87,7 @@ impl Product<'_> {
         if !args.quiet {
             describe(scene, sky, summary, rendering, &head.parts);
             if let Some(verdict) = verdict {
-                describe_verdict(verdict);
+                describe_verdict(verdict, sky.sun_direction());
             }
             println!(
                 "time        {} on {} threads",
@@ -223,9 +224,10 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, 
     );
 }
 
-/// What a certificate found.
-fn describe_verdict(verdict: &Verdict) {
-    let Verdict { asked, rms, most, mean, worst, size: (directions, fans) } = *verdict;
+/// What a certificate found, with the sun in that direction.
+fn describe_verdict(verdict: &Verdict, sun: DVec3) {
+    let Verdict { asked, rms, most, mean, worst, worst_direction, size: (directions, fans) } = *verdict;
+    let (high, away) = (worst_direction.z.asin().to_degrees(), worst_direction.angle_between(sun).to_degrees());
     let signed = |share: f64| format!("{}{}", if share < 0.0 { "-" } else { "+" }, percent(share.abs()));
     let (beyond, asked) = (if verdict.holds() { "below" } else { "not shown to be below" }, percent(asked));
     println!(
@@ -234,11 +236,14 @@ fn describe_verdict(verdict: &Verdict) {
         percent(most)
     );
     println!(
-        "            mean {} +- {}, worst direction {} +- {}; {directions} directions, {} fans of rays",
+        "            mean {} +- {}; {directions} directions, {} fans of rays",
         signed(mean.0),
         percent(mean.1),
-        signed(worst.0),
-        percent(worst.1),
         amount(fans as f64)
+    );
+    println!(
+        "            worst direction, {high:.1} degrees high and {away:.1} from the sun: {} +- {}",
+        signed(worst.0),
+        percent(worst.1)
     );
 }

@@ -36,6 +36,8 @@ pub struct Verdict {
     pub mean: (f64, f64),
     /// Mean over the wavelengths of the error in the direction in which it is largest, and its standard error.
     pub worst: (f64, f64),
+    /// That direction.
+    pub worst_direction: DVec3,
     /// Directions, and fans in all.
     pub size: (usize, u64),
 }
@@ -171,7 +173,7 @@ fn look(direction: DVec3, packets: &[Box<dyn Certifies + '_>]) -> Option<Looked>
 /// The verdict after some rounds, the bound so many standard errors above.
 fn judge(all: &[Looked], rounds: u32, asked: f64, confident: f64) -> Verdict {
     let n = f64::from(rounds);
-    let mut worst = (0.0_f64, 0.0_f64);
+    let (mut worst, mut worst_direction) = ((0.0_f64, 0.0_f64), DVec3::ZERO);
     // Of each direction, means over wavelengths: error, and squared error without what noise adds.
     let rows: Vec<(f64, f64)> = all
         .iter()
@@ -187,7 +189,7 @@ fn judge(all: &[Looked], rounds: u32, asked: f64, confident: f64) -> Verdict {
                 deviation += noise.sqrt() / count;
             }
             if off.abs() > worst.0.abs() {
-                worst = (off, deviation);
+                (worst, worst_direction) = ((off, deviation), looked.direction);
             }
             (off, square)
         })
@@ -206,6 +208,7 @@ fn judge(all: &[Looked], rounds: u32, asked: f64, confident: f64) -> Verdict {
         most: (square + confident * error).sqrt(),
         mean: mean_of(&|row| row.0),
         worst,
+        worst_direction,
         size: (rows.len(), rows.len() as u64 * u64::from(rounds * FANS)),
     }
 }
