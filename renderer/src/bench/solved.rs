@@ -22,6 +22,10 @@ const WAVELENGTHS: usize = 16;
 const WIDTH: u32 = 320;
 const SHOWN: f64 = 2e-4;
 
+/// Zenith angles and azimuths of a dome that is made again and again, and how often.
+const DOME: (u32, u32) = (160, 32);
+const DOMES: u32 = 40;
+
 /// Directions of the dome: zenith angles in degrees, at this many azimuths each.
 const ZENITHS: [f64; 9] = [2.0, 15.0, 30.0, 45.0, 60.0, 75.0, 83.0, 87.0, 89.5];
 const AZIMUTHS: u32 = 6;
@@ -36,6 +40,8 @@ pub struct Report {
     pub size: (usize, usize),
     /// Seconds of one thread for a fisheye of 320 x 320 pixels.
     pub picture_seconds: f64,
+    /// Domes of 160 zenith angles and 32 azimuths a second on the current thread pool, each with another sun 80 to 20 degrees high.
+    pub domes_per_second: f64,
     /// Of each sun its distance from the path tracer.
     pub suns: Vec<Distance>,
 }
@@ -86,6 +92,18 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
         start.elapsed().as_secs_f64()
     };
     let picture_seconds = rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(picture);
+    let dome: Vec<_> = (0..DOME.0 * DOME.1)
+        .map(|i| {
+            towards(89.9 * f64::from(i / DOME.1) / f64::from(DOME.0), 180.0 * f64::from(i % DOME.1) / f64::from(DOME.1))
+        })
+        .collect();
+    let start = Instant::now();
+    for frame in 0..DOMES {
+        let sun = towards(10.0 + 60.0 * f64::from(frame) / f64::from(DOMES), 0.0);
+        let seen = Panorama::new(&solved, from, sun, SHOWN, &dome);
+        std::hint::black_box(dome.par_iter().map(|direction| seen.radiance(&solved, *direction)[0]).sum::<f64>());
+    }
+    let domes_per_second = f64::from(DOMES) / start.elapsed().as_secs_f64();
     let columns = Columns::new(&medium, shape, Tolerance::RENDER);
     let distances = suns.iter().map(|&sun_zenith_deg| {
         let sun = towards(sun_zenith_deg, 0.0);
@@ -129,7 +147,8 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
             stated: FINER * solved.difference(&coarse, from, sun),
         }
     });
-    Ok(Report { seconds, size: (solved.convergence().0, solved.bytes()), picture_seconds, suns: distances.collect() })
+    let size = (solved.convergence().0, solved.bytes());
+    Ok(Report { seconds, size, picture_seconds, domes_per_second, suns: distances.collect() })
 }
 
 /// Mean and its variance, from 32 scrambled Sobol sequences.

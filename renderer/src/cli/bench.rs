@@ -89,13 +89,14 @@ fn solved(args: &BenchArgs) -> Result<Outcome, Failure> {
     for biome in biomes(args)? {
         let report = bench::solved::measure(&data, biome, &SUNS, args.paths).map_err(Failure::error)?;
         println!(
-            "{}: solved in {:.2} s ({:.2} s with a coarser one), {} orders, {:.1} MB; a picture of 320 x 320 {:.2} core-s",
+            "{}: solved in {:.2} s ({:.2} s with a coarser one), {} orders, {:.1} MB; a picture of 320 x 320 {:.2} core-s; {:.0} domes of 160 x 32 a second",
             name(biome),
             report.seconds[0],
             report.seconds[1],
             report.size.0,
             report.size.1 as f64 / 1e6,
-            report.picture_seconds
+            report.picture_seconds,
+            report.domes_per_second
         );
         for sun in report.suns {
             println!(
