@@ -105,9 +105,9 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "DEG", help_heading = "Camera")]
     pub view_elevation: Option<f64>,
     /// Keep the polarisation of light: Stokes parameters, degree and angle in the EXR, and a second PNG of degree and angle
-    /// (NAME-polarisation.png). Needs --method paths or judge
-    #[arg(long, conflicts_with = "filter", help_heading = "Camera")]
-    pub polarisation: bool,
+    /// (NAME-polarisation.png). Needs --method paths or judge [default: off; on without a word]
+    #[arg(long, num_args = 0..=1, default_missing_value = "on", require_equals = true, help_heading = "Camera")]
+    pub polarisation: Option<Switch>,
     /// A polarising filter before the camera, its axis so many degrees from the horizontal of each pixel, anticlockwise as one
     /// looks, -360 to 360. Needs --method paths or judge [default: none]
     #[arg(long, value_name = "ANGLE", help_heading = "Camera")]
@@ -542,8 +542,10 @@ impl RenderArgs {
             height: self.height.or(base.height),
             exposure_ev: self.files.exposure.or(base.exposure_ev),
             // Either replaces the other of the scene.
-            polarisation: self.polarisation || base.polarisation && self.filter.is_none(),
-            filter_deg: self.filter.or(base.filter_deg.filter(|_| !self.polarisation)),
+            polarisation: self
+                .polarisation
+                .map_or(base.polarisation && self.filter.is_none(), |switch| switch == Switch::On),
+            filter_deg: self.filter.or(base.filter_deg.filter(|_| self.polarisation != Some(Switch::On))),
             method: self.method.map_or(base.method, Into::into),
             seed: self.seed.unwrap_or(base.seed),
             spp: self.spp.or(base.spp.filter(|_| !effort)),
@@ -615,7 +617,7 @@ mod tests {
         assert!(
             refusal("--polarisation").contains("--method paths") && refusal("--filter 30").contains("--method paths")
         );
-        assert!(refusal("--polarisation --filter 30").contains("cannot be used with"));
+        assert!(refusal("--polarisation --filter 30 --method paths").contains("leave out"));
     }
 
     #[test]
@@ -628,6 +630,7 @@ mod tests {
         };
         assert_eq!(over(&base, ""), (true, None));
         assert_eq!(over(&base, "--filter 30"), (false, Some(30.0)));
+        assert_eq!(over(&base, "--polarisation=off --method solved"), (false, None));
         let filtered = scene("--filter 30 --method judge").expect("valid");
         assert_eq!(over(&filtered, ""), (false, Some(30.0)));
         assert_eq!(over(&filtered, "--polarisation"), (true, None));
