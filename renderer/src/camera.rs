@@ -96,6 +96,15 @@ impl Camera {
         }
     }
 
+    /// The horizontal unit vector, towards growing azimuth, across what the point (`px`, `py`) of the picture looks in: to the
+    /// right where the zenith is on top. For the zenith and the nadir themselves, and outside the circle of a fisheye, it is
+    /// the picture's own horizontal.
+    #[must_use]
+    pub fn level(&self, px: f64, py: f64) -> DVec3 {
+        let across = self.direction(px, py).map(|direction| direction.cross(DVec3::Z));
+        across.and_then(DVec3::try_normalize).unwrap_or(self.right)
+    }
+
     /// Half the angle, in radians, that contains the pixel (i, j) whatever its shape, with a
     /// margin: its corners' largest distance from its middle. `None` where the pixel's middle
     /// has no direction.
@@ -162,6 +171,21 @@ mod tests {
         let down = Camera::new(Projection::Fisheye { field_of_view: PI }, 64, 64, 0.0, -FRAC_PI_2);
         assert!(close(down.direction(32.0, 0.0).expect("rim"), N));
         assert!(close(down.direction(64.0, 32.0).expect("rim"), E));
+    }
+
+    #[test]
+    fn level_is_horizontal_across_the_view_and_towards_growing_azimuth() {
+        for camera in cameras() {
+            for (x, y) in [(32.0, 16.0), (35.0, 9.0), (28.0, 25.0)] {
+                let (direction, level) = (camera.direction(x, y).expect("inside"), camera.level(x, y));
+                let azimuth = direction.x.atan2(direction.y);
+                // Roundings of unit vectors.
+                assert!(close(level, direction_at(azimuth + FRAC_PI_2, 0.0)), "{camera:?}");
+            }
+        }
+        // At the zenith itself it is across the picture's up.
+        let camera = Camera::new(Projection::Fisheye { field_of_view: PI }, 64, 64, 0.0, FRAC_PI_2);
+        assert!(camera.level(32.0, 32.0).cross(E).length() < 1e-14);
     }
 
     #[test]

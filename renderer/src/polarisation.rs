@@ -27,6 +27,35 @@ impl Stokes {
     pub fn polarised(&self) -> f64 {
         self.q.hypot(self.u)
     }
+
+    /// Degree of linear polarisation, sqrt(Q^2 + U^2) / I, 0 to 1; 0 without light.
+    #[must_use]
+    pub fn degree(&self) -> f64 {
+        if self.i > 0.0 { self.polarised() / self.i } else { 0.0 }
+    }
+
+    /// Angle of linear polarisation in degrees from e1 towards e2, 0 to 180 (180 left out); 0 of light that has none.
+    #[must_use]
+    pub fn angle_deg(&self) -> f64 {
+        let angle = (0.5 * self.u.atan2(self.q)).to_degrees();
+        // A hair below 0 rounds to 180, which is 0.
+        let angle = if angle < 0.0 { angle + 180.0 } else { angle };
+        if angle < 180.0 { angle } else { 0.0 }
+    }
+
+    /// The same light in a frame one of whose axes points the other way.
+    #[must_use]
+    pub fn mirrored(self) -> Self {
+        Self { u: -self.u, ..self }
+    }
+
+    /// Radiance behind an ideal linear polariser whose axis is at `angle` (radians) from e1 towards e2:
+    /// (I + Q cos 2a + U sin 2a) / 2.
+    #[must_use]
+    pub fn through(&self, angle: f64) -> f64 {
+        let (sin, cos) = (2.0 * angle).sin_cos();
+        0.5 * (self.i + self.q * cos + self.u * sin)
+    }
 }
 
 impl AddAssign for Stokes {

@@ -40,6 +40,13 @@ impl Files {
         Ok(files)
     }
 
+    /// Where the picture of polarisation goes, if there is one: `NAME-polarisation.png`.
+    fn polarisation(&self) -> PathBuf {
+        let mut name = self.exr.file_stem().unwrap_or_default().to_os_string();
+        name.push("-polarisation.png");
+        self.exr.with_file_name(name)
+    }
+
     /// Where the state of the run goes.
     pub(super) fn state(&self) -> Option<&Path> {
         self.state.as_deref()
@@ -75,15 +82,22 @@ impl Product<'_> {
         let picture = Picture { film: &rendering.film, disc, colour: sky.colour() };
         let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(&picture));
         let attributes = receipt::receipt(scene, sky, &head.parts, rendering, summary, exposure_ev, verdict.as_ref());
-        let spectral = args.spectral.then_some(scene.wavelengths_nm.nm());
+        let spectral = (args.spectral || scene.polarisation).then_some(scene.wavelengths_nm.nm());
         let exr = exr::encode(&picture, spectral, &attributes).map_err(Failure::error)?;
         let png = png::encode(&picture, exposure_ev).map_err(Failure::error)?;
+        let polarisation = match png::encode_polarisation(&picture) {
+            Some(png) => Some((files.polarisation(), png.map_err(Failure::error)?)),
+            None => None,
+        };
         // First what cannot be made again at once.
         if let Some(path) = files.state() {
             write(path, &head.encode(&rendering.film))?;
         }
         write(&files.exr, &exr)?;
         write(&files.png, &png)?;
+        if let Some((path, png)) = &polarisation {
+            write(path, png)?;
+        }
         if !args.quiet {
             describe(scene, sky, summary, rendering, &head.parts);
             if let Some(verdict) = verdict {
@@ -96,6 +110,9 @@ impl Product<'_> {
             );
             println!("written     {} ({})", files.exr.display(), size(exr.len()));
             println!("            {} ({}, EV {exposure_ev:.1})", files.png.display(), size(png.len()));
+            if let Some((path, png)) = &polarisation {
+                println!("            {} ({}, degree and angle of polarisation)", path.display(), size(png.len()));
+            }
             if let Some(path) = files.state() {
                 println!("            {} (the state of the run)", path.display());
             }

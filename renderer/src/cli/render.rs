@@ -235,13 +235,16 @@ fn print_sample(scene: &Scene, sky: &Sky, (x, y): (u32, u32), sample: u32) -> Re
     if x >= width || y >= height {
         return Err(Failure::usage(format!("pixel is {x},{y}; 0,0 to {},{} is possible", width - 1, height - 1)));
     }
-    let Some((direction, factors)) = replay(scene, sky, x, y, sample) else {
+    let Some((direction, values)) = replay(scene, sky, x, y, sample) else {
         return Err(Failure::usage(format!("pixel {x},{y} lies outside the picture's circle")));
     };
     println!("direction east {}, north {}, up {}", direction.x, direction.y, direction.z);
-    println!("wavelength_nm,radiance_w_m2_sr_nm,radiance_per_solar_irradiance_sr");
-    for ((nm, factor), irradiance) in scene.wavelengths_nm.nm().iter().zip(factors).zip(sky.irradiance_w_m2_nm()) {
-        println!("{nm},{:e},{factor:e}", factor * irradiance);
+    let parameters: Vec<&[f64]> = values.chunks(sky.wavelengths()).collect();
+    let more = if parameters.len() > 1 { ",q_per_solar_irradiance_sr,u_per_solar_irradiance_sr" } else { "" };
+    println!("wavelength_nm,radiance_w_m2_sr_nm,radiance_per_solar_irradiance_sr{more}");
+    for (index, (nm, irradiance)) in scene.wavelengths_nm.nm().iter().zip(sky.irradiance_w_m2_nm()).enumerate() {
+        let factors: String = parameters.iter().map(|values| format!(",{:e}", values[index])).collect();
+        println!("{nm},{:e}{factors}", values[index] * irradiance);
     }
     Ok(Outcome::Done)
 }

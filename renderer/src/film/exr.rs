@@ -6,6 +6,9 @@
 //! | `error.R`, `error.G`, `error.B`, `error.Y` | standard errors of these and of the luminance |
 //! | `S0.550,000nm` ... | spectral radiance in W m^-2 sr^-1 nm^-1, on demand; layout of Fichet, Pacanowski & Wilkie, JCGT 10(3), 2021 |
 //! | `error.S0.550,000nm` ... | their standard errors |
+//! | `S1.550,000nm`, `S2.550,000nm` ... | of a film of polarised light Q and U in the same unit, with errors likewise |
+//! | `S3.550,000nm` ... | zero, for readers of the layout want all four: V is not reported |
+//! | `DoLP`, `AoLP` | degree (0 to 1) and angle (degrees from e1 towards e2, 0 to 180) of linear polarisation, of I, Q and U weighed by luminance |
 //!
 //! The solar disc is in the values and not in the errors. Outside the circle of a fisheye
 //! everything is zero; the error of a pixel with one block of samples is infinite. The same picture
@@ -29,10 +32,10 @@ pub enum Attribute {
     Integer(i32),
 }
 
-/// Name of the spectral channel of a wavelength in nm, to a picometre: `S0.550,000nm`.
+/// Name of the spectral channel of a Stokes parameter (0 to 3) at a wavelength in nm, to a picometre: `S0.550,000nm`.
 #[must_use]
-pub fn channel_name(wavelength_nm: f64) -> String {
-    format!("S0.{wavelength_nm:.3}nm").replacen('.', "\u{0}", 1).replace('.', ",").replace('\u{0}', ".")
+pub fn channel_name(parameter: usize, wavelength_nm: f64) -> String {
+    format!("S{parameter}.{}nm", format!("{wavelength_nm:.3}").replace('.', ","))
 }
 
 /// An EXR file of the picture. `spectral` lists the wavelengths of the film in nm if their channels are
@@ -61,15 +64,31 @@ pub fn encode(
     }
     add("error.Y".into(), &|pixel| known(pixel, film.luminance(pixel).error));
     for (index, &wavelength_nm) in spectral.unwrap_or_default().iter().enumerate() {
-        let name = channel_name(wavelength_nm);
+        let name = channel_name(0, wavelength_nm);
         add(format!("error.{name}"), &|pixel| known(pixel, film.radiance(pixel, index).error));
         add(name, &|pixel| picture.radiance(pixel, index));
+        if film.keeps_stokes() {
+            for parameter in [1, 2] {
+                let name = channel_name(parameter, wavelength_nm);
+                let of = |pixel| film.spectral(pixel, parameter, index);
+                add(format!("error.{name}"), &|pixel| known(pixel, of(pixel).error));
+                add(name, &|pixel| of(pixel).mean);
+            }
+            add(channel_name(3, wavelength_nm), &|_| 0.0);
+        }
+    }
+    if film.keeps_stokes() {
+        add("DoLP".into(), &|pixel| picture.stokes(pixel).unwrap_or_default().degree());
+        add("AoLP".into(), &|pixel| picture.stokes(pixel).unwrap_or_default().angle_deg());
     }
 
     let mut own = LayerAttributes { white_luminance: Some(1.0), ..LayerAttributes::default() };
     if spectral.is_some() {
         own.other.insert(text("spectralLayoutVersion"), AttributeValue::Text(text("1.0")));
         own.other.insert(text("emissiveUnits"), AttributeValue::Text(text("W.m^-2.sr^-1.nm^-1")));
+        if film.keeps_stokes() {
+            own.other.insert(text("polarisationHandedness"), AttributeValue::Text(text("right")));
+        }
     }
     for (name, value) in attributes {
         let value = match value {
@@ -176,7 +195,7 @@ mod tests {
         let wavelengths = Wavelengths::new(vec![450.0, 550.25]).expect("valid");
         let (sun, observer) = test_data::light();
         let colour = Colour::new(&sun, &observer, &wavelengths).expect("in range");
-        let mut film = Film::new(3, 2, vec![2.0, 1.5]);
+        let mut film = Film::new(3, 2, vec![2.0, 1.5], false);
         let mut rows = film.rows_mut();
         for (value, red) in [(1.0, 10.0), (3.0, 20.0)] {
             rows[1].add(2, &[value, 4.0], [red, 5.0, 6.0]);
@@ -190,21 +209,55 @@ mod tests {
         encode(&picture, Some(wavelengths.nm()), &attributes).expect("encodes")
     }
 
-    #[test]
-    fn what_is_written_is_read_back() {
+    /// The layer of a file, and the last pixel of a channel.
+    fn decoded(bytes: Vec<u8>) -> Layer<AnyChannels<FlatSamples>> {
         let image = read()
             .no_deep_data()
             .largest_resolution_level()
             .all_channels()
             .first_valid_layer()
             .all_attributes()
-            .from_buffered(std::io::Cursor::new(encoded()))
+            .from_buffered(std::io::Cursor::new(bytes))
             .expect("an EXR file");
-        let layer = image.layer_data;
-        let value = |name: &str| -> f32 {
-            let channel = layer.channel_data.list.iter().find(|c| c.name.eq(name)).expect("there");
-            channel.sample_data.values_as_f32().last().expect("pixels")
+        image.layer_data
+    }
+
+    fn last(layer: &Layer<AnyChannels<FlatSamples>>, name: &str) -> f32 {
+        let channel = layer.channel_data.list.iter().find(|c| c.name.eq(name)).expect("there");
+        channel.sample_data.values_as_f32().last().expect("pixels")
+    }
+
+    #[test]
+    fn polarised_light_is_read_back() {
+        let wavelengths = Wavelengths::new(vec![550.0]).expect("valid");
+        let (sun, observer) = test_data::light();
+        let colour = Colour::new(&sun, &observer, &wavelengths).expect("in range");
+        let mut film = Film::new(1, 1, vec![2.0], true);
+        for u in [2.0, 4.0] {
+            film.rows_mut()[0].add(0, &[10.0, -4.0, u], [1.0; 3]);
+        }
+        let encoded = |factor| {
+            let disc = DiscLayer::from([(0, vec![factor])]);
+            let picture = Picture { film: &film, disc: &disc, colour: &colour };
+            decoded(encode(&picture, Some(wavelengths.nm()), &[]).expect("encodes"))
         };
+        let layer = encoded(0.0);
+        let names = ["S0.550,000nm", "S1.550,000nm", "S2.550,000nm", "S3.550,000nm", "error.S2.550,000nm"];
+        assert_eq!(names.map(|name| last(&layer, name)), [20.0, -8.0, 6.0, 0.0, 2.0]);
+        // Half of I; 2 angle = 180 - atan(3/4) degrees.
+        let angle = 0.5 * (180.0 - 0.75_f32.atan().to_degrees());
+        assert!((last(&layer, "DoLP") - 0.5).abs() < 1e-6 && (last(&layer, "AoLP") - angle).abs() < 1e-4);
+        assert_eq!(layer.attributes.other[&text("polarisationHandedness")], AttributeValue::Text(text("right")));
+        // The sun's disc is natural light.
+        let layer = encoded(15.0);
+        assert!((last(&layer, "DoLP") - 0.2).abs() < 1e-6 && last(&layer, "S1.550,000nm") == -8.0);
+    }
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let layer = decoded(encoded());
+        let value = |name: &str| last(&layer, name);
+        assert!(layer.channel_data.list.iter().all(|c| !c.name.eq("DoLP")), "of radiance alone there is none");
         assert_eq!(value("error.R"), 5.0);
         assert_eq!(value("S0.450,000nm"), 4.0 + 14.0);
         assert_eq!(value("error.S0.450,000nm"), 2.0);

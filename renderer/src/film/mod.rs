@@ -5,7 +5,8 @@
 //!
 //! Every pixel keeps the mean and the spread of its blocks for each wavelength and,
 //! apart from them, for R, G, B and Y: the wavelengths of one sample are
-//! correlated, so the error of a colour cannot be had from the errors of wavelengths.
+//! correlated, so the error of a colour cannot be had from the errors of wavelengths. A film of polarised light has Q and U
+//! of each wavelength too.
 //! The solar disc is no sample; it is laid over the picture when it is written.
 
 pub mod exr;
@@ -15,19 +16,27 @@ pub mod tone;
 
 pub use raw::RawError;
 
+use crate::polarisation::Stokes;
 use crate::spectrum::{Colour, linear_srgb, luminance};
 use std::collections::BTreeMap;
 
 /// R, G, B and Y follow the wavelengths of a pixel.
 const COLOURS: usize = 4;
 
+/// Numbers of a pixel: of N wavelengths I, and Q and U if they are kept, then the colours.
+fn channels(wavelengths: usize, stokes: bool) -> usize {
+    wavelengths * if stokes { 3 } else { 1 } + COLOURS
+}
+
 /// Running statistics of a picture: arrays over pixel (row by row from the top), then
-/// channel (N wavelengths, then R, G, B, Y).
+/// channel (I at N wavelengths, then Q and U if they are kept, then R, G, B, Y).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Film {
     width: u32,
     height: u32,
     irradiance_w_m2_nm: Vec<f64>,
+    /// Whether Q and U are kept.
+    stokes: bool,
     counts: Vec<u32>,
     means: Vec<f64>,
     /// Sums of squared deviations from the mean.
@@ -70,15 +79,16 @@ pub struct Errors {
 
 impl Film {
     /// An empty film for N = `irradiance_w_m2_nm.len()` wavelengths; the numbers are the sun's spectral
-    /// irradiance there (W m^-2 nm^-1), by which radiance factors become radiances.
+    /// irradiance there (W m^-2 nm^-1), by which radiance factors become radiances. `stokes`: whether Q and U are kept too.
     #[must_use]
-    pub fn new(width: u32, height: u32, irradiance_w_m2_nm: Vec<f64>) -> Self {
+    pub fn new(width: u32, height: u32, irradiance_w_m2_nm: Vec<f64>, stokes: bool) -> Self {
         let pixels = width as usize * height as usize;
-        let values = pixels * (irradiance_w_m2_nm.len() + COLOURS);
+        let values = pixels * channels(irradiance_w_m2_nm.len(), stokes);
         Self {
             width,
             height,
             irradiance_w_m2_nm,
+            stokes,
             counts: vec![0; pixels],
             means: vec![0.0; values],
             squares: vec![0.0; values],
@@ -87,8 +97,8 @@ impl Film {
 
     /// Bytes that a film of this size takes.
     #[must_use]
-    pub fn bytes(width: u32, height: u32, wavelengths: usize) -> u64 {
-        u64::from(width) * u64::from(height) * (4 + 16 * (wavelengths + COLOURS) as u64)
+    pub fn bytes(width: u32, height: u32, wavelengths: usize, stokes: bool) -> u64 {
+        u64::from(width) * u64::from(height) * (4 + 16 * channels(wavelengths, stokes) as u64)
     }
 
     /// Width and height in pixels.
@@ -103,8 +113,14 @@ impl Film {
         self.irradiance_w_m2_nm.len()
     }
 
+    /// Whether Q and U are kept.
+    #[must_use]
+    pub fn keeps_stokes(&self) -> bool {
+        self.stokes
+    }
+
     fn channels(&self) -> usize {
-        self.wavelengths() + COLOURS
+        channels(self.wavelengths(), self.stokes)
     }
 
     /// The rows from the top, to be filled in any order.
@@ -141,9 +157,10 @@ impl Film {
     /// squares += other squares + d^2 n m / (n + m) (Chan, Golub & LeVeque 1983).
     ///
     /// # Errors
-    /// [`OtherFilm`] if size or wavelengths differ; then nothing is added.
+    /// [`OtherFilm`] if size, wavelengths or what is kept differ; then nothing is added.
     pub fn merge(&mut self, other: &Self) -> Result<(), OtherFilm> {
-        let same = self.size() == other.size() && self.irradiance_w_m2_nm == other.irradiance_w_m2_nm;
+        let what = |film: &Self| (film.size(), film.stokes);
+        let same = what(self) == what(other) && self.irradiance_w_m2_nm == other.irradiance_w_m2_nm;
         let sum = |(n, m): (&u32, &u32)| n.checked_add(*m);
         let counts: Option<Vec<u32>> = self.counts.iter().zip(&other.counts).map(sum).collect();
         let Some(counts) = counts.filter(|_| same) else { return Err(OtherFilm) };
@@ -173,22 +190,39 @@ impl Film {
     /// Spectral radiance in W m^-2 sr^-1 nm^-1 of a pixel at wavelength `index`.
     #[must_use]
     pub fn radiance(&self, pixel: usize, index: usize) -> Estimate {
-        let Estimate { mean, error } = self.estimate(pixel, index);
+        self.spectral(pixel, 0, index)
+    }
+
+    /// Q and U in W m^-2 sr^-1 nm^-1 of a pixel at wavelength `index`; `None` of a film that does not keep them.
+    #[must_use]
+    pub fn polarised(&self, pixel: usize, index: usize) -> Option<[Estimate; 2]> {
+        self.stokes.then(|| [1, 2].map(|parameter| self.spectral(pixel, parameter, index)))
+    }
+
+    /// Stokes parameter number `parameter` (I, Q, U) in W m^-2 sr^-1 nm^-1.
+    fn spectral(&self, pixel: usize, parameter: usize, index: usize) -> Estimate {
+        let Estimate { mean, error } = self.estimate(pixel, parameter * self.wavelengths() + index);
         let irradiance = self.irradiance_w_m2_nm[index];
         Estimate { mean: mean * irradiance, error: error * irradiance }
+    }
+
+    /// The mean radiance factors in sr^-1 of Stokes parameter number `parameter` (I, Q, U).
+    fn factors(&self, pixel: usize, parameter: usize) -> &[f64] {
+        let first = pixel * self.channels() + parameter * self.wavelengths();
+        &self.means[first..first + self.wavelengths()]
     }
 
     /// Linear sRGB of a pixel; white at 1 cd/m^2 is (1, 1, 1).
     #[must_use]
     pub fn rgb(&self, pixel: usize) -> [Estimate; 3] {
-        let n = self.wavelengths();
-        [n, n + 1, n + 2].map(|channel| self.estimate(pixel, channel))
+        let first = self.channels() - COLOURS;
+        [first, first + 1, first + 2].map(|channel| self.estimate(pixel, channel))
     }
 
     /// Luminance of a pixel in cd/m^2.
     #[must_use]
     pub fn luminance(&self, pixel: usize) -> Estimate {
-        self.estimate(pixel, self.wavelengths() + 3)
+        self.estimate(pixel, self.channels() - 1)
     }
 
     /// How well the picture is known. Pixels outside the picture do not count, and neither
@@ -228,7 +262,8 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 impl Row<'_> {
-    /// Adds one block to pixel `x`: mean radiance factors in sr^-1 at the wavelengths and their linear sRGB.
+    /// Adds one block to pixel `x`: mean radiance factors in sr^-1 at the wavelengths (I, then Q and U if they are kept)
+    /// and their linear sRGB.
     ///
     /// Welford's update: d = x - mean; mean += d / n; squares += d (x - mean).
     pub fn add(&mut self, x: u32, factors: &[f64], rgb: [f64; 3]) {
@@ -261,7 +296,7 @@ impl Row<'_> {
 
 /// Two films that are not of the same picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the films differ in size or wavelengths, or have too many blocks together")]
+#[error("the films differ in size, wavelengths or what they keep, or have too many blocks together")]
 pub struct OtherFilm;
 
 /// The sun's own image: by pixel, the radiance factors in sr^-1 that its disc adds.
@@ -294,6 +329,16 @@ impl Picture<'_> {
         let sun = self.disc.get(&pixel).map_or(0.0, |factors| factors[index]);
         self.film.radiance(pixel, index).mean + sun * self.film.irradiance_w_m2_nm[index]
     }
+
+    /// Stokes parameters of a pixel in luminance (cd/m^2), the disc, whose light is natural, included; `None` of a film that
+    /// keeps none. Each is its spectrum weighed as the eye weighs light.
+    #[must_use]
+    pub fn stokes(&self, pixel: usize) -> Option<Stokes> {
+        let weighed = |factors: &[f64]| self.colour.xyz(factors)[1];
+        let [i, q, u] = self.film.stokes.then(|| [0, 1, 2].map(|k| weighed(self.film.factors(pixel, k))))?;
+        let sun = self.disc.get(&pixel).map_or(0.0, |factors| weighed(factors));
+        Some(Stokes { i: i + sun, q, u })
+    }
 }
 
 /// Why a picture cannot be encoded, or read.
@@ -312,7 +357,7 @@ mod tests {
     use super::*;
 
     fn film_of(samples: &[[f64; 2]]) -> Film {
-        let mut film = Film::new(2, 1, vec![2.0, 3.0]);
+        let mut film = Film::new(2, 1, vec![2.0, 3.0], false);
         let mut rows = film.rows_mut();
         for s in samples {
             rows[0].add(1, s, [s[0], s[1], 0.0]);
@@ -350,8 +395,9 @@ mod tests {
                 );
             }
         }
-        assert_eq!(whole.clone().merge(&Film::new(2, 1, vec![2.0, 3.5])), Err(OtherFilm));
-        assert_eq!(whole.clone().merge(&Film::new(1, 2, vec![2.0, 3.0])), Err(OtherFilm));
+        assert_eq!(whole.clone().merge(&Film::new(2, 1, vec![2.0, 3.5], false)), Err(OtherFilm));
+        assert_eq!(whole.clone().merge(&Film::new(1, 2, vec![2.0, 3.0], false)), Err(OtherFilm));
+        assert_eq!(whole.clone().merge(&Film::new(2, 1, vec![2.0, 3.0], true)), Err(OtherFilm));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A film as bytes, so that work can go on later or elsewhere: little-endian, the sun's irradiances (f64), the counts of
 //! the pixels (u32), then means and sums of squares of all channels (f64).
 
-use super::{COLOURS, Film};
+use super::{Film, channels};
 
 /// Why bytes are no film.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -28,12 +28,12 @@ impl Film {
         bytes.extend(self.means.iter().chain(&self.squares).flat_map(|v| v.to_le_bytes()));
     }
 
-    /// The film of that size and number of wavelengths that `bytes` are. No more memory is taken than they have.
+    /// The film of that size and number of wavelengths, with Q and U if `stokes`, that `bytes` are. No more memory is taken than they have.
     ///
     /// # Errors
     /// [`RawError`] if it is not a film of this size, or holds what no film can.
-    pub fn read(width: u32, height: u32, wavelengths: usize, bytes: &[u8]) -> Result<Self, RawError> {
-        let expected = Self::bytes(width, height, wavelengths).saturating_add(8 * wavelengths as u64);
+    pub fn read(width: u32, height: u32, wavelengths: usize, stokes: bool, bytes: &[u8]) -> Result<Self, RawError> {
+        let expected = Self::bytes(width, height, wavelengths, stokes).saturating_add(8 * wavelengths as u64);
         let found = bytes.len() as u64;
         if found != expected {
             return Err(RawError::Length { expected, found });
@@ -42,11 +42,12 @@ impl Film {
         let pixels = width as usize * height as usize;
         let (irradiance, rest) = bytes.split_at(8 * wavelengths);
         let (counts, values) = rest.split_at(4 * pixels);
-        let (means, squares) = values.split_at(8 * pixels * (wavelengths + COLOURS));
+        let (means, squares) = values.split_at(8 * pixels * channels(wavelengths, stokes));
         let film = Self {
             width,
             height,
             irradiance_w_m2_nm: numbers(irradiance),
+            stokes,
             counts: counts.as_chunks::<4>().0.iter().map(|b| u32::from_le_bytes(*b)).collect(),
             means: numbers(means),
             squares: numbers(squares),
@@ -72,20 +73,20 @@ mod tests {
 
     #[test]
     fn a_film_reads_back_bit_by_bit_and_damage_is_refused() {
-        let mut film = Film::new(2, 1, vec![1.5, 0.5]);
+        let mut film = Film::new(2, 1, vec![1.5, 0.5], false);
         for values in [[1.0, 0.1], [2.0, 0.3]] {
             film.rows_mut()[0].add(1, &values, [values[0], -0.25, values[1]]);
         }
         let mut bytes = Vec::new();
         film.write(&mut bytes);
-        assert_eq!(Film::read(2, 1, 2, &bytes).as_ref(), Ok(&film));
+        assert_eq!(Film::read(2, 1, 2, false, &bytes).as_ref(), Ok(&film));
         let (found, expected) = (bytes.len() as u64, bytes.len() as u64 + 4 + 6 * 16);
-        assert_eq!(Film::read(3, 1, 2, &bytes), Err(RawError::Length { expected, found }));
+        assert_eq!(Film::read(3, 1, 2, false, &bytes), Err(RawError::Length { expected, found }));
         // The last number is a sum of squares.
         let last = bytes.len() - 8;
         for wrong in [-1.0, f64::NAN, f64::INFINITY] {
             bytes[last..].copy_from_slice(&f64::to_le_bytes(wrong));
-            assert_eq!(Film::read(2, 1, 2, &bytes), Err(RawError::Impossible));
+            assert_eq!(Film::read(2, 1, 2, false, &bytes), Err(RawError::Impossible));
         }
     }
 }

@@ -230,3 +230,20 @@ fn matrices_a_little_beyond_what_is_possible_are_brought_back() {
         }
     }
 }
+
+#[test]
+fn a_filter_follows_the_law_of_malus() {
+    for angle_deg in [0.0, 30.0, 90.0, 135.0, 179.0] {
+        let (sin, cos) = f64::to_radians(2.0 * angle_deg).sin_cos();
+        let light = Stokes { i: 3.0, q: 2.0 * cos, u: 2.0 * sin };
+        assert!((light.degree() - 2.0 / 3.0).abs() < 1e-14 && (light.angle_deg() - angle_deg).abs() < 1e-12);
+        for turn in [0.0, 20.0, 45.0, 90.0] {
+            // Half of the natural part, and cos^2 of the polarised one.
+            let expected = 0.5 + 2.0 * f64::to_radians(turn).cos().powi(2);
+            assert!((light.through(f64::to_radians(angle_deg + turn)) - expected).abs() < 1e-14);
+        }
+    }
+    assert_eq!((Stokes::default().degree(), Stokes::default().angle_deg()), (0.0, 0.0));
+    // A hair below e1 is e1.
+    assert_eq!(Stokes { i: 1.0, q: 1.0, u: -1e-40 }.angle_deg(), 0.0);
+}

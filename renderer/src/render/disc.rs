@@ -36,13 +36,15 @@ pub fn disc_layer(scene: &Scene, sky: &Sky) -> DiscLayer {
         let radii = 2.0 * reach / radius;
         let points = (radii * ACROSS_RADIUS).clamp(LEAST, MANY).max(radii * COARSE).min(MOST).ceil() as u32;
         let mut factors = vec![0.0; sky.wavelengths()];
+        // Sunlight is natural.
+        let weight = sky.passes();
         let (mut inside, mut lit) = (0.0, false);
         for j in 0..points {
             for i in 0..points {
                 let at = |origin: u32, k: u32| f64::from(origin) + (f64::from(k) + 0.5) / f64::from(points);
                 let Some(direction) = camera.direction(at(x, i), at(y, j)) else { continue };
                 inside += 1.0;
-                lit |= sky.add_disc(direction, 1.0, &mut factors);
+                lit |= sky.add_disc(direction, weight, &mut factors);
             }
         }
         lit.then(|| factors.iter().map(|f| f / inside).collect())

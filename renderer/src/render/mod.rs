@@ -158,7 +158,7 @@ pub fn render(scene: &Scene, sky: &Sky, control: Control<'_>) -> Result<Renderin
 #[must_use]
 pub fn empty(scene: &Scene, sky: &Sky) -> Film {
     let (width, height) = scene.size();
-    Film::new(width, height, sky.irradiance_w_m2_nm().to_vec())
+    Film::new(width, height, sky.irradiance_w_m2_nm().to_vec(), sky.keeps_stokes())
 }
 
 /// As [`render`], for a part of the picture, from a film that this part has filled before; `keep` sees the film now and
@@ -332,22 +332,22 @@ impl Pass<'_> {
     /// Fills a row; the error is (row, column, sample) of an estimate that is not finite.
     fn fill(&self, mut row: Row<'_>) -> Result<(), (u32, u32, u32)> {
         let (width, y) = (row.width(), row.y);
-        let mut factors = vec![0.0; self.sky.wavelengths()];
-        let mut sum = factors.clone();
+        let mut values = vec![0.0; self.sky.values()];
+        let mut sum = values.clone();
         for x in (0..width).filter(|&x| sample::is_shown(self.camera, x, y)) {
             for count in row.blocks(x)..self.until {
                 let first = self.shard.block(count) * self.block;
                 sum.fill(0.0);
                 for sample in first..first + self.block {
                     let place = sample::Index { seed: self.seed, block: self.block, sample };
-                    sample::take(self.sky, self.camera, (width, x, y), place, &mut factors);
-                    if !factors.iter().all(|v| v.is_finite()) {
+                    sample::take(self.sky, self.camera, (width, x, y), place, &mut values);
+                    if !values.iter().all(|v| v.is_finite()) {
                         return Err((y, x, sample));
                     }
-                    sum.iter_mut().zip(&factors).for_each(|(sum, factor)| *sum += factor);
+                    sum.iter_mut().zip(&values).for_each(|(sum, value)| *sum += value);
                 }
                 sum.iter_mut().for_each(|sum| *sum /= f64::from(self.block));
-                row.add(x, &sum, linear_srgb(self.sky.colour().xyz(&sum)));
+                row.add(x, &sum, linear_srgb(self.sky.colour().xyz(&sum[..self.sky.wavelengths()])));
             }
         }
         Ok(())

@@ -25,7 +25,7 @@ impl Index {
     }
 }
 
-/// Radiance factors (sr^-1) of one sample of pixel (`x`, `y`) of a valid scene, as the picture took it, and the
+/// What [`Sky::look`] gave (sr^-1) for one sample of pixel (`x`, `y`) of a valid scene, as the picture took it, and the
 /// direction it looked in; `None` where the picture shows nothing.
 #[must_use]
 pub fn replay(scene: &Scene, sky: &Sky, x: u32, y: u32, sample: u32) -> Option<(DVec3, Vec<f64>)> {
@@ -33,10 +33,10 @@ pub fn replay(scene: &Scene, sky: &Sky, x: u32, y: u32, sample: u32) -> Option<(
     if !is_shown(&camera, x, y) {
         return None;
     }
-    let mut factors = vec![0.0; sky.wavelengths()];
+    let mut values = vec![0.0; sky.values()];
     let index = Index { seed: scene.seed, block: scene.block(), sample };
-    let direction = take(sky, &camera, (scene.size().0, x, y), index, &mut factors);
-    Some((direction, factors))
+    let direction = take(sky, &camera, (scene.size().0, x, y), index, &mut values);
+    Some((direction, values))
 }
 
 /// Whether the picture shows something at pixel (`x`, `y`): at its middle.
@@ -51,7 +51,7 @@ pub(super) fn take(
     camera: &Camera,
     (width, x, y): (u32, u32, u32),
     index: Index,
-    factors: &mut [f64],
+    values: &mut [f64],
 ) -> DVec3 {
     let mut sampler = index.sampler(u64::from(y) * u64::from(width) + u64::from(x));
     let middle = if sky.is_solved() && index.sample == 0 {
@@ -60,7 +60,7 @@ pub(super) fn take(
         None
     };
     let direction = middle.unwrap_or_else(|| within(camera, x, y, &mut sampler));
-    sky.radiance(direction, &sampler, factors);
+    sky.look(direction, camera.level(f64::from(x) + 0.5, f64::from(y) + 0.5), &sampler, values);
     direction
 }
 

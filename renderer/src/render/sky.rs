@@ -6,6 +6,7 @@ use crate::atmosphere::{Air, AirSettings, Columns, Haze, Medium, OzoneSource, To
 use crate::data::{Data, Identity};
 use crate::geometry::{Place, Shape};
 use crate::light::{SunDisc, solar_angular_radius};
+use crate::polarisation::{Frame, Stokes};
 use crate::sampling::Sampler;
 use crate::scene::{Scene, SceneError};
 use crate::spectrum::{Colour, Packet, Wavelengths};
@@ -29,6 +30,18 @@ pub struct Sky {
     any_place: bool,
     sun_direction: DVec3,
     identities: Vec<Identity>,
+    shows: Shows,
+}
+
+/// What a picture shows of the light.
+#[derive(Debug, Clone, Copy)]
+enum Shows {
+    /// Radiance.
+    Radiance,
+    /// Stokes parameters.
+    Stokes,
+    /// Radiance behind a polarising filter at this angle in radians.
+    Filtered(f64),
 }
 
 impl Sky {
@@ -87,6 +100,7 @@ impl Sky {
             air: &air,
             data,
             method: scene.method,
+            polarised: scene.is_polarised(),
             place,
             sun_direction,
             wanted,
@@ -112,6 +126,11 @@ impl Sky {
             air,
             sun_direction,
             identities,
+            shows: match scene.filter_deg {
+                Some(angle) => Shows::Filtered(angle.to_radians()),
+                None if scene.polarisation => Shows::Stokes,
+                None => Shows::Radiance,
+            },
         })
     }
 
@@ -136,6 +155,52 @@ impl Sky {
         for (range, carrier) in &self.carriers {
             carrier.radiance(self.place, direction, &mut sampler.clone(), &mut factors[range.clone()]);
         }
+    }
+
+    /// As [`Sky::radiance`], what a picture keeps of it, in sr^-1: radiance factors, behind the filter if there is one; or the
+    /// Stokes parameters, I at all wavelengths, then Q, then U. `level` is e1, made perpendicular to `direction` if it is not
+    /// quite; e2 is upwards from it.
+    pub fn look(&self, direction: DVec3, level: DVec3, sampler: &Sampler, values: &mut [f64]) {
+        let count = self.wavelengths();
+        match self.shows {
+            Shows::Radiance => self.radiance(direction, sampler, values),
+            Shows::Stokes => self.stokes(direction, level, sampler, &mut |index, Stokes { i, q, u }| {
+                (values[index], values[count + index], values[2 * count + index]) = (i, q, u);
+            }),
+            Shows::Filtered(angle) => self.stokes(direction, level, sampler, &mut |index, seen| {
+                values[index] = seen.through(angle);
+            }),
+        }
+    }
+
+    /// Hands the Stokes parameters of each wavelength to `see`. With e2 upwards e1 x e2 = -d: a picture's frame, in
+    /// which angles run anticlockwise as one looks, is the mirror image of that of [`crate::polarisation`].
+    fn stokes(&self, direction: DVec3, level: DVec3, sampler: &Sampler, see: &mut dyn FnMut(usize, Stokes)) {
+        let across = level.reject_from_normalized(direction).try_normalize();
+        let frame = Frame::new(direction, -across.unwrap_or_else(|| direction.any_orthonormal_vector()));
+        for (range, carrier) in &self.carriers {
+            carrier.stokes(self.place, direction, frame, &mut sampler.clone(), &mut |lane, seen: Stokes| {
+                see(range.start + lane, seen.mirrored());
+            });
+        }
+    }
+
+    /// Numbers that [`Sky::look`] gives: one for each wavelength, or three.
+    #[must_use]
+    pub fn values(&self) -> usize {
+        self.wavelengths() * if self.keeps_stokes() { 3 } else { 1 }
+    }
+
+    /// Whether pictures keep Stokes parameters.
+    #[must_use]
+    pub fn keeps_stokes(&self) -> bool {
+        matches!(self.shows, Shows::Stokes)
+    }
+
+    /// Share of natural light that the camera's filter lets pass, 1 without one.
+    #[must_use]
+    pub fn passes(&self) -> f64 {
+        if matches!(self.shows, Shows::Filtered(_)) { 0.5 } else { 1.0 }
     }
 
     /// Whether radiances come from solved tables, without noise.
@@ -301,6 +366,7 @@ struct Parts<'a> {
     air: &'a Air,
     data: &'a Data,
     method: Method,
+    polarised: bool,
     place: Place,
     sun_direction: DVec3,
     wanted: &'a [DVec3],
@@ -314,6 +380,14 @@ impl Parts<'_> {
         let last = packet.range.end - 1;
         let shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
         let medium = self.air.medium(&nm)?;
+        if self.polarised && !medium.polarises() {
+            return Err(SceneError::Refused(
+                "a phase function without a scattering matrix (Henyey-Greenstein) leaves polarisation unknown: take \
+                 --phase mie"
+                    .into(),
+            )
+            .into());
+        }
         let albedo = std::array::from_fn(|lane| self.albedo[(packet.range.start + lane).min(last)]);
         let sun = SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius())?;
         let means = match self.method.estimator() {
@@ -325,7 +399,7 @@ impl Parts<'_> {
             }
             Some(estimator) => Means::Estimated(estimator, Columns::new(&medium, shape, Tolerance::RENDER)),
         };
-        Ok(Box::new(Lanes { means, shape, medium, albedo, sun }))
+        Ok(Box::new(Lanes { means, shape, medium, albedo, sun, polarised: self.polarised, count: packet.range.len() }))
     }
 }
 
@@ -350,6 +424,15 @@ fn seen<const L: usize>(
 /// the packet's range.
 trait Carrier: Debug + Send + Sync {
     fn radiance(&self, from: Place, direction: DVec3, sampler: &mut Sampler, factors: &mut [f64]);
+    /// Hands the Stokes parameters of each lane to `see`; none of solved tables, which know none.
+    fn stokes(
+        &self,
+        from: Place,
+        direction: DVec3,
+        frame: Frame,
+        sampler: &mut Sampler,
+        see: &mut dyn FnMut(usize, Stokes),
+    );
     fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool;
     fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]);
     fn table_error(&self) -> Option<f64>;
@@ -378,6 +461,24 @@ struct Lanes<const L: usize> {
     medium: Medium<L>,
     albedo: [f64; L],
     sun: SunDisc<L>,
+    /// Whether light is followed with its polarisation.
+    polarised: bool,
+    /// Wavelengths of the packet, at most L.
+    count: usize,
+}
+
+impl<const L: usize> Lanes<L> {
+    fn problem<'a>(&'a self, columns: &'a Columns<L>) -> Problem<'a, L> {
+        Problem {
+            shape: self.shape,
+            medium: &self.medium,
+            columns,
+            albedo: self.albedo,
+            sun: Some(&self.sun),
+            environment: None,
+            max_orders: None,
+        }
+    }
 }
 
 impl<const L: usize> Carrier for Lanes<L> {
@@ -395,17 +496,27 @@ impl<const L: usize> Carrier for Lanes<L> {
                 return;
             }
         };
-        let problem = Problem {
-            shape: self.shape,
-            medium: &self.medium,
-            columns,
-            albedo: self.albedo,
-            sun: Some(&self.sun),
-            environment: None,
-            max_orders: None,
-        };
-        let estimate = transport::radiance(estimator, &problem, from, direction, sampler);
+        if self.polarised {
+            // I is the same in every frame.
+            let frame = Frame::new(direction, direction.any_orthonormal_vector());
+            return self.stokes(from, direction, frame, sampler, &mut |lane, seen| factors[lane] = seen.i);
+        }
+        let estimate = transport::radiance(estimator, &self.problem(columns), from, direction, sampler);
         factors.copy_from_slice(&estimate[..factors.len()]);
+    }
+
+    fn stokes(
+        &self,
+        from: Place,
+        direction: DVec3,
+        frame: Frame,
+        sampler: &mut Sampler,
+        see: &mut dyn FnMut(usize, Stokes),
+    ) {
+        if let Means::Estimated(estimator, columns) = &self.means {
+            let seen = transport::stokes(*estimator, &self.problem(columns), from, direction, frame, sampler);
+            seen.into_iter().take(self.count).enumerate().for_each(|(lane, seen)| see(lane, seen));
+        }
     }
 
     fn table_error(&self) -> Option<f64> {

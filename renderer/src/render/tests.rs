@@ -1,5 +1,7 @@
 //! Behaviour of whole pictures, on the tables of the repository.
 
+mod polarised;
+
 use super::*;
 use crate::data::Data;
 use crate::scene::CameraKind;

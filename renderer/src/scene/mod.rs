@@ -100,6 +100,14 @@ pub struct Scene {
     pub height: Option<u32>,
     /// Exposure of the PNG, EV at ISO 100, -30 to 30; automatic if not given.
     pub exposure_ev: Option<f64>,
+    /// Whether the picture keeps the Stokes parameters I, Q and U. Their frame: e1 horizontal, towards growing azimuth
+    /// ([`Camera::level`]), e2 upwards.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub polarisation: bool,
+    /// Axis of a polarising filter before the camera in degrees from e1 towards e2, -360 to 360: the picture is what passes.
+    /// This and `polarisation` exclude each other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub filter_deg: Option<f64>,
     /// How radiance is found.
     pub method: Method,
     /// Seed of the random numbers.
@@ -154,6 +162,8 @@ impl Default for Scene {
             width: None,
             height: None,
             exposure_ev: None,
+            polarisation: false,
+            filter_deg: None,
             method: Method::Solved,
             seed: 0,
             spp: None,
@@ -207,9 +217,17 @@ impl Scene {
             // As in `to_json`.
             serde_json::to_value(estimand).unwrap_or_default()
         });
-        let ours = ours.as_object()?;
-        let (key, value) = ours.iter().find(|(key, value)| theirs.get(key.as_str()) != Some(value))?;
-        Some(format!("{key} is {value} in one, {} in the other", theirs[key.as_str()]))
+        // Some keys are left out where they have their default.
+        let mut keys = ours.as_object()?.keys().chain(theirs.as_object()?.keys());
+        let key = keys.find(|key| ours.get(key) != theirs.get(key))?;
+        let value = |scene: &serde_json::Value| scene.get(key).map_or("not given".into(), ToString::to_string);
+        Some(format!("{key} is {} in one, {} in the other", value(&ours), value(&theirs)))
+    }
+
+    /// Whether light is followed with its polarisation.
+    #[must_use]
+    pub fn is_polarised(&self) -> bool {
+        self.polarisation || self.filter_deg.is_some()
     }
 
     /// The first setting that says something of an aerosol, by its flag without dashes.
@@ -429,6 +447,9 @@ mod tests {
         let other = Scene { sun_elevation_deg: 29.0, ..default() };
         assert_eq!(scene.difference(&other).as_deref(), Some("sun_elevation_deg is 30.0 in one, 29.0 in the other"));
         assert!(scene.difference(&Scene { spp: Some(1), ..default() }).expect("blocks").contains("block is 4"));
+        let other = Scene { polarisation: true, ..default() };
+        assert_eq!(scene.difference(&other).as_deref(), Some("polarisation is not given in one, true in the other"));
+        assert!(other.difference(&scene).is_some());
     }
 
     #[test]
@@ -440,7 +461,9 @@ mod tests {
         assert_eq!(of("/home/somebody/haze.table"), ["haze.table"]);
         assert_eq!(of("../elsewhere/haze.table"), ["haze.table"]);
         assert_eq!(of("./own/haze.table"), ["own/haze.table"]);
-        assert!(!Scene::default().to_json().contains("tables"), "an old scene reads as before");
+        let json = Scene::default().to_json();
+        let newer = ["tables", "polarisation", "filter_deg"];
+        assert!(newer.iter().all(|key| !json.contains(key)), "an old scene reads as before");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::{Albedo, CameraKind, MAX_BLOCK, MAX_SPP, Scene};
 use crate::film::Film;
 use crate::spectrum::SpectrumError;
+use crate::transport::Method;
 use tables::{TableError, excerpt, nearest};
 
 /// The largest width and height in pixels.
@@ -95,6 +96,7 @@ impl Scene {
         }
         self.validate_aerosol()?;
         self.validate_view()?;
+        self.validate_polarisation()?;
         optional("exposure", self.exposure_ev, -30.0, 30.0, " EV")?;
         optional("spp", self.spp.map(f64::from), 1.0, f64::from(MAX_SPP), "")?;
         optional("error", self.error, 1e-5, 1.0, "")?;
@@ -120,6 +122,19 @@ impl Scene {
         }
     }
 
+    fn validate_polarisation(&self) -> Result<(), SceneError> {
+        optional("filter", self.filter_deg, -360.0, 360.0, " degrees")?;
+        if self.polarisation && self.filter_deg.is_some() {
+            return Err(SceneError::Refused(
+                "what has passed a filter is polarised along its axis: leave out polarisation or filter".into(),
+            ));
+        }
+        if self.is_polarised() && self.method == Method::Solved {
+            return Err(SceneError::Refused("solved tables carry no polarisation: take --method paths".into()));
+        }
+        Ok(())
+    }
+
     fn validate_view(&self) -> Result<(), SceneError> {
         match self.camera {
             CameraKind::Fisheye => optional("fov", self.fov_deg, 1.0, 360.0, " degrees for a fisheye")?,
@@ -136,7 +151,7 @@ impl Scene {
         let (width, height) = self.size();
         range("width", f64::from(width), 1.0, MAX_SIZE, " pixels")?;
         range("height", f64::from(height), 1.0, MAX_SIZE, " pixels")?;
-        let bytes = Film::bytes(width, height, self.wavelengths_nm.nm().len());
+        let bytes = Film::bytes(width, height, self.wavelengths_nm.nm().len(), self.polarisation);
         if bytes > MAX_FILM_BYTES {
             let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
             return Err(SceneError::Refused(format!(
@@ -205,6 +220,11 @@ mod tests {
         assert!(refusal(|s| s.block = Some(48)).contains("power of two"));
         let large = |s: &mut Scene| (s.width, s.height) = (Some(16_384), Some(16_384));
         assert!(refusal(large).contains("GiB"));
+        assert!(refusal(|s| s.polarisation = true).contains("--method paths"));
+        assert!(refusal(|s| s.filter_deg = Some(0.0)).contains("--method paths"));
+        let both = |s: &mut Scene| (s.polarisation, s.filter_deg, s.method) = (true, Some(0.0), Method::Judge);
+        assert!(refusal(both).contains("leave out"));
+        assert_eq!(refusal(|s| s.filter_deg = Some(361.0)), "filter is 361; -360 to 360 degrees is possible");
     }
 
     #[test]
