@@ -200,7 +200,7 @@ impl Scattering {
     /// Itself, if light of every state stays light, I^2 >= Q^2 + U^2 + V^2:
     /// (a3 + a4)^2 + 4 b2^2 <= (a1 + a2)^2 - 4 b1^2 and |a3 - a4| <= a1 - a2
     /// (Hovenier & van der Mee 1996; Hovenier, van der Mee & Domke 2004, appendix A). If rounding or interpolation has put it a little
-    /// beyond, the nearest that is possible with all elements but a1 multiplied by one factor; `None` if this is below 1 - 0.98.
+    /// beyond, the nearest that is possible with all elements but a1 multiplied by one factor; `None` if this is below 0.98.
     #[must_use]
     pub fn possible(self) -> Option<Self> {
         let Self { a1, a2, a3, a4, b1, b2 } = self;
