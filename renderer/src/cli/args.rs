@@ -69,7 +69,7 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "E", value_parser = share, num_args = 0..=1, default_missing_value = "0.1%", require_equals = true, help_heading = "Sampling")]
     pub certify: Option<f64>,
     /// Relative error (rms) that solved tables are to have, 1e-5 to 1: finer ones are solved until they state it, or there is none
-    /// finer; 0.2% takes some three times as long [default: 1%]
+    /// finer; with aerosol 0.2% takes some five times as long [default: 1%]
     #[arg(long, value_name = "E", value_parser = share, help_heading = "Sampling")]
     pub table_error: Option<f64>,
     /// Wavelengths: how many from 380 to 780 nm, 1 to 1000, or a list in nm, 300 to 1000,
