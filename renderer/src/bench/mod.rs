@@ -10,14 +10,18 @@ pub mod polarised;
 pub mod solved;
 
 use crate::atmosphere::{Columns, Component, Medium, MediumError, Tolerance};
+use crate::data::Data;
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::phase::Phase;
+use crate::render::{RenderError, Sky};
 use crate::sampling::{POINTS, Sampler};
-use crate::transport::{self, Certificate, Estimator, Fan, Problem, Resolution, SolveError, Solved};
+use crate::scene::Scene;
+use crate::transport::{self, Certificate, Estimator, Fan, Method, Problem, Resolution, SolveError, Solved};
 use glam::DVec3;
 use std::time::Instant;
 use tables::units::KM;
+use tables::views::Biome;
 use tables::{Axis, Curve, Outside, Scale};
 
 const RADIUS_M: f64 = 6360.0 * KM;
@@ -27,6 +31,24 @@ const ALBEDO: f64 = 0.2;
 
 /// Sky pixels of the picture that costs are given for: a fisheye of 320 x 320.
 pub const PIXELS: f64 = 80_425.0;
+
+/// `L` wavelengths in nm, at least 2, evenly from 380 to 780.
+pub(crate) fn visible<const L: usize>() -> [f64; L] {
+    std::array::from_fn(|i| 380.0 + 400.0 * i as f64 / (L - 1) as f64)
+}
+
+/// The medium of a scene with that biome at `L` wavelengths in nm.
+///
+/// # Errors
+/// [`RenderError`] if the data do not have what it takes.
+pub(crate) fn medium<const L: usize>(
+    data: &Data,
+    biome: Option<Biome>,
+    nm: &[f64; L],
+) -> Result<Medium<L>, RenderError> {
+    let scene = Scene { biome, method: Method::Paths, ..Scene::default() };
+    Ok(Sky::new(&scene, data)?.air().medium(nm)?)
+}
 
 /// A sky of the bench.
 #[derive(Debug, Clone, Copy, PartialEq)]

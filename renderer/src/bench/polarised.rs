@@ -2,18 +2,14 @@
 
 use super::towards;
 use crate::atmosphere::{Columns, Medium, Tolerance};
-use crate::data::Data;
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::polarisation::{Frame, Stokes};
-use crate::render::{RenderError, Sky};
 use crate::sampling::Sampler;
-use crate::scene::Scene;
-use crate::transport::{self, Estimator, Method, Problem};
+use crate::transport::{self, Estimator, Problem};
 use glam::DVec3;
 use std::time::Instant;
 use tables::units::EARTH_RADIUS_M;
-use tables::views::Biome;
 
 /// Directions: zenith angle and azimuth from the sun in degrees.
 const VIEWS: [(f64, f64); 6] = [(5.0, 90.0), (30.0, 0.0), (45.0, 120.0), (60.0, 180.0), (75.0, 60.0), (85.0, 150.0)];
@@ -43,15 +39,6 @@ impl Report {
     pub fn cost(&self) -> f64 {
         self.seconds[1] / self.seconds[0] * self.variance[1] / self.variance[0]
     }
-}
-
-/// The medium of a scene with that biome at `L` wavelengths in nm.
-///
-/// # Errors
-/// [`RenderError`] if the data do not have what it takes.
-pub fn medium<const L: usize>(data: &Data, biome: Option<Biome>, nm: &[f64; L]) -> Result<Medium<L>, RenderError> {
-    let scene = Scene { biome, method: Method::Paths, ..Scene::default() };
-    Ok(Sky::new(&scene, data)?.air().medium(nm)?)
 }
 
 /// Traces sequences of `points` paths (a power of two) from the ground, on the current thread; the sun is a parallel beam.

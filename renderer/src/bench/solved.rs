@@ -1,21 +1,21 @@
 //! What solved tables cost, and how far they are from the path tracer.
 
-use super::towards;
+use super::{medium, towards, visible};
 use crate::atmosphere::{Columns, Tolerance};
 use crate::data::Data;
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
-use crate::render::{RenderError, Sky};
+use crate::render::RenderError;
 use crate::sampling::Sampler;
 use crate::scene::Scene;
-use crate::transport::{self, Estimator, FINER, Method, Panorama, Problem, Resolution, Solved};
+use crate::transport::{self, Estimator, FINER, Panorama, Problem, Resolution, Solved};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::time::Instant;
 use tables::units::EARTH_RADIUS_M;
 use tables::views::Biome;
 
-/// Wavelengths in nm: sixteen, evenly over what is seen.
+/// Wavelengths, evenly over what is seen.
 const WAVELENGTHS: usize = 16;
 
 /// Pixels of the picture's width that is timed, and the error of its panorama.
@@ -40,6 +40,8 @@ pub struct Report {
     pub size: (usize, usize),
     /// Seconds of one thread for a fisheye of 320 x 320 pixels.
     pub picture_seconds: f64,
+    /// Directions that were looked at for it.
+    pub looks: usize,
     /// Domes of 160 zenith angles and 32 azimuths a second on the current thread pool, each with another sun 80 to 20 degrees high.
     pub domes_per_second: f64,
     /// Of each sun its distance from the path tracer.
@@ -69,11 +71,8 @@ pub struct Distance {
 /// # Errors
 /// [`RenderError`] if the data do not have what it takes.
 pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> Result<Report, RenderError> {
-    let scene = Scene { biome, method: Method::Paths, ..Scene::default() };
-    let sky = Sky::new(&scene, data)?;
-    let nm: [f64; WAVELENGTHS] = std::array::from_fn(|i| 380.0 + 400.0 * i as f64 / (WAVELENGTHS - 1) as f64);
     let shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
-    let (medium, albedo) = (sky.air().medium(&nm)?, [0.1; WAVELENGTHS]);
+    let (medium, albedo) = (medium(data, biome, &visible())?, [0.1; WAVELENGTHS]);
     let start = Instant::now();
     let solved = Solved::new(&medium, shape, albedo, &Resolution::RENDER)?;
     let first = start.elapsed().as_secs_f64();
@@ -89,9 +88,9 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
         let wanted: Vec<_> = directions.iter().step_by(20).copied().collect();
         let seen = Panorama::new(&solved, from, sun, SHOWN, &wanted);
         std::hint::black_box(directions.iter().map(|direction| seen.radiance(&solved, *direction)[0]).sum::<f64>());
-        start.elapsed().as_secs_f64()
+        (start.elapsed().as_secs_f64(), seen.looks())
     };
-    let picture_seconds = rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(picture);
+    let (picture_seconds, looks) = rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(picture);
     let dome: Vec<_> = (0..DOME.0 * DOME.1)
         .map(|i| {
             towards(89.9 * f64::from(i / DOME.1) / f64::from(DOME.0), 180.0 * f64::from(i % DOME.1) / f64::from(DOME.1))
@@ -148,7 +147,7 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
         }
     });
     let size = (solved.convergence().0, solved.bytes());
-    Ok(Report { seconds, size, picture_seconds, domes_per_second, suns: distances.collect() })
+    Ok(Report { seconds, size, picture_seconds, looks, domes_per_second, suns: distances.collect() })
 }
 
 /// Mean and its variance, from 32 scrambled Sobol sequences.

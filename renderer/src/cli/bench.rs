@@ -42,13 +42,12 @@ const ONE: [f64; 1] = [450.0];
 
 fn polarised(args: &BenchArgs) -> Result<Outcome, Failure> {
     let data = Data::load(&args.data).map_err(Failure::error)?;
-    let sixteen: [f64; 16] = std::array::from_fn(|i| 380.0 + 400.0 * i as f64 / 15.0);
     let points = u32::try_from(args.paths / 32).unwrap_or(u32::MAX).clamp(1, POINTS as u32);
     println!("one thread; noise as variance, at equal paths");
     let pool = super::pool(Some(1))?;
     for biome in biomes(args)? {
-        let one = bench::polarised::medium(&data, biome, &ONE).map_err(Failure::error)?;
-        let many = bench::polarised::medium(&data, biome, &sixteen).map_err(Failure::error)?;
+        let one = bench::medium(&data, biome, &ONE).map_err(Failure::error)?;
+        let many = bench::medium(&data, biome, &bench::visible::<16>()).map_err(Failure::error)?;
         println!("{}", name(biome));
         for sun in [30.0, 60.0, 85.0, 92.0] {
             let one = pool.install(|| bench::polarised::measure(&one, sun, points));
@@ -89,13 +88,14 @@ fn solved(args: &BenchArgs) -> Result<Outcome, Failure> {
     for biome in biomes(args)? {
         let report = bench::solved::measure(&data, biome, &SUNS, args.paths).map_err(Failure::error)?;
         println!(
-            "{}: solved in {:.2} s ({:.2} s with a coarser one), {} orders, {:.1} MB; a picture of 320 x 320 {:.2} core-s; {:.0} domes of 160 x 32 a second",
+            "{}: solved in {:.2} s ({:.2} s with a coarser one), {} orders, {:.1} MB; a picture of 320 x 320 {:.2} core-s ({} looks); {:.0} domes of 160 x 32 a second",
             name(biome),
             report.seconds[0],
             report.seconds[1],
             report.size.0,
             report.size.1 as f64 / 1e6,
             report.picture_seconds,
+            report.looks,
             report.domes_per_second
         );
         for sun in report.suns {

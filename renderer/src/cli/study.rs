@@ -8,7 +8,6 @@ use crate::data::Data;
 use crate::film::png;
 use crate::render::RenderError;
 use crate::study::{self, Chart};
-use std::path::Path;
 
 /// Makes a chart from the data; hears of progress.
 type Make = fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError>;
@@ -37,17 +36,13 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
         })
         .map_err(Failure::error)?;
     line.clear();
-    write(&path, &bytes)?;
+    tables::file::replace(&path, &bytes).map_err(|e| super::unwritable(&path, &e))?;
     if !args.quiet {
         println!("{}", rows.join("\n"));
         println!("time        {} on {} threads", duration(line.elapsed().as_secs_f64()), pool.current_num_threads());
         println!("written     {}", path.display());
     }
     Ok(Outcome::Done)
-}
-
-fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    tables::file::replace(path, bytes).map_err(|e| super::unwritable(path, &e))
 }
 
 /// The points, under the names of their panels.
@@ -64,7 +59,7 @@ fn of_chart(chart: &Chart) -> Vec<String> {
 }
 
 fn of_strip(strip: &study::strip::Strip) -> Vec<String> {
-    let mut rows = vec![format!("tables      {:.3} s, with the first look at the sky", strip.solve_seconds)];
+    let mut rows = vec![format!("tables      {:.3} s", strip.solve_seconds)];
     rows.extend(strip.skies.iter().map(|sky| {
         let (elevation, seconds, stated) = (sky.elevation_deg, sky.seconds, 100.0 * sky.table_error);
         format!(

@@ -173,7 +173,8 @@ fn look(direction: DVec3, packets: &[Box<dyn Certifies + '_>]) -> Option<Looked>
 /// The verdict after some rounds, the bound so many standard errors above.
 fn judge(all: &[Looked], rounds: u32, asked: f64, confident: f64) -> Verdict {
     let n = f64::from(rounds);
-    let (mut worst, mut worst_direction) = ((0.0_f64, 0.0_f64), DVec3::ZERO);
+    let first = all.first().map_or(DVec3::Z, |looked| looked.direction);
+    let (mut worst, mut worst_direction) = ((0.0_f64, 0.0_f64), first);
     // Of each direction, means over wavelengths: error, and squared error without what noise adds.
     let rows: Vec<(f64, f64)> = all
         .iter()

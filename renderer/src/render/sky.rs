@@ -138,7 +138,7 @@ impl Sky {
     /// error that scene asks for.
     ///
     /// # Errors
-    /// [`SolveError::Inexact`] if the tables are too far off there.
+    /// [`SolveError::Inexact`] if the tables are too far off there; then it is of neither scene.
     pub fn turn(&mut self, scene: &Scene) -> Result<(), RenderError> {
         let wanted = looked_at(scene);
         (self.place, self.sun_direction) = (Place::above(scene.altitude_km * KM), scene.sun_direction());

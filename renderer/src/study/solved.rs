@@ -1,14 +1,13 @@
 //! Solved tables: their error over the sun's elevation, found by certificates, and against the cost of their grids.
 
 use super::{Chart, Point};
-use crate::atmosphere::{Columns, Medium, Tolerance};
-use crate::bench::towards;
+use crate::atmosphere::{Columns, Tolerance};
+use crate::bench::{medium, towards, visible};
 use crate::data::Data;
 use crate::geometry::{Place, Shape};
-use crate::render::{RenderError, Sky, certify_table};
+use crate::render::{RenderError, certify_table};
 use crate::sampling::spiral;
-use crate::scene::Scene;
-use crate::transport::{Method, Resolution, Solved, Tables};
+use crate::transport::{Resolution, Solved, Tables};
 use glam::DVec3;
 use std::time::Instant;
 use tables::units::EARTH_RADIUS_M;
@@ -36,12 +35,6 @@ const USUAL: [&str; 2] =
 const FINEST: [&str; 2] =
     ["finest tables: below, with 95 % confidence (certificates)", "finest tables: stated (from coarser ones)"];
 
-fn medium(data: &Data, biome: Option<Biome>) -> Result<Medium<WAVELENGTHS>, RenderError> {
-    let scene = Scene { biome, method: Method::Paths, ..Scene::default() };
-    let nm = std::array::from_fn(|i| 380.0 + 400.0 * i as f64 / (WAVELENGTHS - 1) as f64);
-    Ok(Sky::new(&scene, data)?.air().medium(&nm)?)
-}
-
 /// Directions above the horizon, even in solid angle.
 fn dome() -> Vec<DVec3> {
     (0..DIRECTIONS).map(|i| spiral(i, DIRECTIONS, [0.0, 1.0])).collect()
@@ -56,7 +49,7 @@ pub fn suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
     let all: Vec<Option<Biome>> = std::iter::once(None).chain(Biome::ALL.into_iter().map(Some)).collect();
     let mut points = Vec::new();
     for (i, &biome) in all.iter().enumerate() {
-        let medium = medium(data, biome)?;
+        let medium = medium::<WAVELENGTHS>(data, biome, &visible())?;
         let columns = Columns::new(&medium, SHAPE, Tolerance::RENDER);
         let from = Place::above(EYE_M);
         // Any error is small enough for the usual tables, none for the finest.
@@ -108,7 +101,7 @@ const SEEN: [(&str, f64); 3] = [("sun at 30 degrees", 60.0), ("sun at 0 degrees"
 /// # Errors
 /// [`RenderError`] if the data do not have what it takes.
 pub fn grids(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError> {
-    let medium = medium(data, Some(Biome::DesertDust))?;
+    let medium = medium::<WAVELENGTHS>(data, Some(Biome::DesertDust), &visible())?;
     let best = Resolution { levels: 40, suns: 64, zeniths: [12, 7, 9], parts: 16, degree: 24, change: 2e-5 };
     let reference = Solved::new(&medium, SHAPE, ALBEDO, &best)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;

@@ -20,6 +20,7 @@ use super::line::MOST_SPECIES;
 use super::species::{Species, moments};
 use crate::atmosphere::{Chord, Columns, Component, Medium, MediumError, Tolerance};
 use crate::geometry::{Place, Shape};
+use crate::phase::Phase;
 use crate::vectors::exp_minus;
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI};
@@ -141,7 +142,7 @@ impl<const L: usize> Peak<L> {
         let cut: [f64; L] = std::array::from_fn(|j| species.scattering[j] * straight[j] / (1.0 - straight[j]));
         let most = cut.iter().copied().fold(0.0, f64::max);
         let density = medium.components()[species.component].density.clone();
-        let phase = crate::phase::Phase::Rayleigh { gamma: [0.0] };
+        let phase = Phase::Rayleigh { gamma: [0.0] };
         let component = Component { density, scattering: [most], absorption: [0.0], phase };
         let columns = Columns::new(&Medium::new(vec![component], medium.top_m())?, shape, Tolerance::SOLVE);
         let chi = moments(&species.phase, LAST);

@@ -187,7 +187,8 @@ impl<const L: usize> Survey<'_, L> {
         let Some(azimuths) = tried.and_then(|tried| tried.into_iter().max()) else {
             return vec![Part::new(between, ends, None)];
         };
-        let rings = (0..=RINGS).map(|i| self.ring(at(i as f64 / RINGS as f64), azimuths, false)).collect();
+        let ring = |i: usize| self.ring(at(i as f64 / RINGS as f64), azimuths, false);
+        let rings = (0..=RINGS).into_par_iter().map(ring).collect();
         self.halves(between, ends, azimuths, rings, HALVES)
     }
 
@@ -200,26 +201,26 @@ impl<const L: usize> Survey<'_, L> {
         halves: u32,
     ) -> Vec<Part<L>> {
         let nodes = self.nodes(azimuths, &rings);
-        let (mut all, mut good) = (Vec::with_capacity(2 * RINGS + 1), true);
-        for (i, ring) in rings.into_iter().enumerate() {
-            if i > 0 {
-                let share = (2 * i - 1) as f64 / (2 * RINGS) as f64;
-                let new = self.ring(between.at(ends.0 + (ends.1 - ends.0) * share), azimuths, false);
-                let shown = |(j, looked)| self.is_good(&nodes, [share, j as f64 / azimuths as f64], looked);
-                good = good && new.iter().enumerate().all(shown);
-                all.push(new);
-            }
-            all.push(ring);
-        }
+        let share = |i: usize| (2 * i + 1) as f64 / (2 * RINGS) as f64;
+        let look = |i| self.ring(between.at(ends.0 + (ends.1 - ends.0) * share(i)), azimuths, false);
+        let new: Vec<_> = (0..RINGS).into_par_iter().map(look).collect();
+        let good = new.iter().enumerate().all(|(i, ring)| {
+            let shown = |(j, looked)| self.is_good(&nodes, [share(i), j as f64 / azimuths as f64], looked);
+            ring.iter().enumerate().all(shown)
+        });
+        let mut all = interleaved(rings, new);
         if good || halves == 0 {
             let nodes = good.then(|| self.nodes(azimuths, &all));
             return vec![Part::new(between, ends, nodes)];
         }
-        let second = all[RINGS..].to_vec();
-        all.truncate(RINGS + 1);
+        let second = all.split_off(RINGS);
+        all.push(second[0].clone());
         let middle = 0.5 * (ends.0 + ends.1);
-        let mut parts = self.halves(between, (ends.0, middle), azimuths, all, halves - 1);
-        parts.extend(self.halves(between, (middle, ends.1), azimuths, second, halves - 1));
+        let (mut parts, more) = rayon::join(
+            || self.halves(between, (ends.0, middle), azimuths, all, halves - 1),
+            || self.halves(between, (middle, ends.1), azimuths, second, halves - 1),
+        );
+        parts.extend(more);
         parts
     }
 
@@ -234,13 +235,7 @@ impl<const L: usize> Survey<'_, L> {
             if new.iter().enumerate().all(|(j, looked)| self.is_good(&nodes, [0.0, turn(j)], looked)) {
                 return Some(azimuths);
             }
-            let mut both = Vec::with_capacity(2 * azimuths + 1);
-            let mut new = new.into_iter();
-            for old in ring {
-                both.push(old);
-                both.extend(new.next());
-            }
-            (ring, azimuths) = (both, 2 * azimuths);
+            (ring, azimuths) = (interleaved(ring, new), 2 * azimuths);
         }
         None
     }
@@ -266,21 +261,32 @@ impl<const L: usize> Survey<'_, L> {
     }
 }
 
+/// The old ones with a new one between each two.
+fn interleaved<T>(old: Vec<T>, new: Vec<T>) -> Vec<T> {
+    let mut all = Vec::with_capacity(old.len() + new.len());
+    let mut new = new.into_iter();
+    for one in old {
+        all.push(one);
+        all.extend(new.next());
+    }
+    all
+}
+
 /// Zenith angles of the edges: of the ground, the air and its layers, with both ends.
 fn edges<const L: usize>(solved: &Solved<L>, from: Place) -> Vec<f64> {
     let Optics { medium, .. } = &*solved.optics;
     let radius = solved.grid.radius;
     let layers = medium.jumps().into_iter().chain(medium.bends()).take(MOST_EDGES);
     let altitudes = [0.0, medium.top_m()].into_iter().chain(layers);
-    let touched = altitudes.filter(|altitude| *altitude < from.altitude_m).map(|altitude| {
-        // PI - asin of (R + a) / (R + h), by the half angle's tangent: nothing cancels.
+    let touched = altitudes.filter(|altitude| *altitude <= from.altitude_m).map(|altitude| {
+        // The dip below the horizontal of the tangent to R + a, seen from R + h; nothing cancels in its opposite side.
         let (below, sum) = (from.altitude_m - altitude, 2.0 * radius + from.altitude_m + altitude);
         0.5 * PI + (below * sum).sqrt().atan2(radius + altitude)
     });
-    // A line that rises from the ground behind the observer crosses no levels there.
+    // Also of what lines touch behind the observer: there one that rises from the ground crosses no levels.
     let mut edges: Vec<f64> = touched.flat_map(|edge| [PI - edge, edge]).chain([0.0, PI]).collect();
     edges.sort_by(f64::total_cmp);
-    edges.dedup_by(|b, a| *b - *a < 1e3 * OFF);
+    edges.dedup_by(|b, a| *b - *a < 4.0 * OFF);
     edges
 }
 
