@@ -8,6 +8,26 @@ pub(crate) fn vectorised<W: NullaryFnOnce>(work: W) -> W::Output {
     pulp::Arch::new().dispatch(work)
 }
 
+/// Adds products to a sum. (What is summed in place has to be copied: of arrays that might overlap no vectors are made.)
+#[inline(always)]
+pub(crate) fn add_product<const L: usize>(sum: &mut [f32; L], a: &[f32; L], b: &[f32; L]) {
+    let (mut total, a, b) = (*sum, *a, *b);
+    for j in 0..L {
+        total[j] += a[j] * b[j];
+    }
+    *sum = total;
+}
+
+/// Adds `factor` times a row to a sum.
+#[inline(always)]
+pub(crate) fn add_scaled<const L: usize>(sum: &mut [f32; L], factor: f32, row: &[f32; L]) {
+    let (mut total, row) = (*sum, *row);
+    for j in 0..L {
+        total[j] += factor * row[j];
+    }
+    *sum = total;
+}
+
 /// exp(-x) of each x >= -700, to 3e-13 relative; 0 above 700.
 ///
 /// -x = k ln 2 + r with a whole k and |r| <= ln 2 / 2: the power series of exp(r) up to r^10, and 2^k by its exponent.

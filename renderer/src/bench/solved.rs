@@ -33,8 +33,8 @@ const AZIMUTHS: u32 = 6;
 /// An atmosphere's solution.
 #[derive(Debug)]
 pub struct Report {
-    /// Seconds to solve on the current thread pool: with the columns that it needs, and for the finer and the coarser
-    /// table from which its error follows.
+    /// Seconds to solve on the current thread pool, columns and a coarser table included; those of the coarser table, from which
+    /// the other begins and its error follows.
     pub seconds: [f64; 2],
     /// Orders of scattering, and bytes of the table.
     pub size: (usize, usize),
@@ -74,10 +74,10 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
     let shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
     let (medium, albedo) = (medium(data, biome, &visible())?, [0.1; WAVELENGTHS]);
     let start = Instant::now();
-    let solved = Solved::new(&medium, shape, albedo, &Resolution::RENDER)?;
+    let coarse = Solved::new(&medium, shape, albedo, &Resolution::COARSE)?;
     let first = start.elapsed().as_secs_f64();
-    let coarse = solved.again(&Resolution::COARSE, None)?;
-    let seconds = [first, start.elapsed().as_secs_f64()];
+    let solved = coarse.again(&Resolution::RENDER, None)?;
+    let seconds = [start.elapsed().as_secs_f64(), first];
     let from = Place::above(2.0);
     let camera = Scene { width: Some(WIDTH), height: Some(WIDTH), ..Scene::default() }.camera();
     let sun = towards(60.0, 0.0);

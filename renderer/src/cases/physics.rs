@@ -56,8 +56,10 @@ impl Pair {
         if single {
             return Ok(Self { solved: Solved::single(medium, shape, [albedo])?, coarse: None });
         }
-        let solved = Solved::new(medium, shape, [albedo], &Resolution::FINE)?;
-        let coarse = solved.again(&Resolution::RENDER, None)?;
+        let fine = Resolution::FINE;
+        let coarser = Resolution { degree: fine.degree, ..Resolution::RENDER };
+        let coarse = Solved::new(medium, shape, [albedo], &coarser)?;
+        let solved = coarse.again(&fine, None)?;
         Ok(Self { solved, coarse: Some(coarse) })
     }
 }

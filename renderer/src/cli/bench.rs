@@ -88,7 +88,7 @@ fn solved(args: &BenchArgs) -> Result<Outcome, Failure> {
     for biome in biomes(args)? {
         let report = bench::solved::measure(&data, biome, &SUNS, args.paths).map_err(Failure::error)?;
         println!(
-            "{}: solved in {:.2} s ({:.2} s with a coarser one), {} orders, {:.1} MB; a picture of 320 x 320 {:.2} core-s ({} looks); {:.0} domes of 160 x 32 a second",
+            "{}: solved in {:.2} s ({:.2} s of it for the coarser table), {} orders, {:.1} MB; a picture of 320 x 320 {:.2} core-s ({} looks); {:.0} domes of 160 x 32 a second",
             name(biome),
             report.seconds[0],
             report.seconds[1],

@@ -19,7 +19,7 @@ fn exponential(scale_height: f64, top: f64) -> Curve {
 }
 
 /// Air, a low haze with a jump at 2 km, and a layer of ozone.
-fn medium() -> Medium<2> {
+pub(super) fn medium() -> Medium<2> {
     hazy([2e-5, 3e-5])
 }
 
@@ -46,7 +46,7 @@ fn direction(zenith_deg: f64) -> DVec3 {
     DVec3::new(sin, 0.0, cos)
 }
 
-const EARTH: Shape = Shape::Sphere { radius_m: RADIUS };
+pub(super) const EARTH: Shape = Shape::Sphere { radius_m: RADIUS };
 
 /// What is asked of a transmittance: 1e-4, and 1e-3 of it wherever it exceeds 1e-6.
 fn close(table: f64, exact: f64) -> bool {

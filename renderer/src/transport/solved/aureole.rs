@@ -21,8 +21,9 @@ use super::species::{Species, moments};
 use crate::atmosphere::{Chord, Columns, Component, Medium, MediumError, Tolerance};
 use crate::geometry::{Place, Shape};
 use crate::phase::Phase;
-use crate::vectors::exp_minus;
+use crate::vectors::{exp_minus, vectorised};
 use glam::DVec3;
+use pulp::NullaryFnOnce;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// Convolutions that are tabulated: twofold and so on; the last stands for all further ones.
@@ -155,21 +156,43 @@ impl<const L: usize> Peak<L> {
                     })
                 })
                 .collect();
-        let folds = (0..=STEPS).map(|i| {
+        let folds = vectorised(Convolutions { peak: &peak, straight });
+        Ok(Self { columns, shares: cut.map(|cut| cut / most), folds })
+    }
+}
+
+/// f Q^(*n) from the moments of Q, as work for vectors.
+struct Convolutions<'a, const L: usize> {
+    peak: &'a [[f64; L]],
+    straight: [f64; L],
+}
+
+impl<const L: usize> NullaryFnOnce for Convolutions<'_, L> {
+    type Output = Vec<[[f64; L]; FOLDS]>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let mut folds = Vec::with_capacity(STEPS + 1);
+        for i in 0..=STEPS {
             let angle = PI * (i as f64 / STEPS as f64).powi(2);
             let mut sums = [[0.0; L]; FOLDS];
-            for ((l, p), q) in (0..).zip(legendre(LAST, angle.cos())).zip(&peak) {
+            for ((l, p), q) in (0..).zip(legendre(LAST, angle.cos())).zip(self.peak) {
                 let weight = f64::from(2 * l + 1) * 0.25 * FRAC_1_PI * p;
+                let (q, mut power) = (*q, self.straight);
                 for j in 0..L {
-                    let mut power = weight * straight[j] * q[j];
-                    for sum in &mut sums {
-                        power *= q[j];
-                        sum[j] += power;
+                    power[j] *= weight * q[j];
+                }
+                for sum in &mut sums {
+                    let mut total = *sum;
+                    for j in 0..L {
+                        power[j] *= q[j];
+                        total[j] += power[j];
                     }
+                    *sum = total;
                 }
             }
-            sums
-        });
-        Ok(Self { columns, shares: cut.map(|cut| cut / most), folds: folds.collect() })
+            folds.push(sums);
+        }
+        folds
     }
 }

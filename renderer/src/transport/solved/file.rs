@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use tables::{Axis, Field as Values, Kind, Precision, Scale, Table, TableError, Tolerance};
 
 /// Changes with what a solution computes from the same inputs.
-const METHOD: u32 = 1;
+const METHOD: u32 = 2;
 
 /// Hashes what is written to it.
 struct Hashed(DefaultHasher);
@@ -25,11 +25,11 @@ impl Write for Hashed {
     }
 }
 
-/// A hash of all that a solution depends on.
-pub(super) fn key<const L: usize>(optics: &Optics<L>, radius: f64, resolution: &Resolution) -> String {
+/// A hash of all that a solution depends on: with its own resolution those of the solutions from which it was begun.
+pub(super) fn key<const L: usize>(optics: &Optics<L>, radius: f64, resolutions: &[Resolution]) -> String {
     let mut hashed = Hashed(DefaultHasher::new());
     let inputs: [&dyn Debug; 7] =
-        [&METHOD, &env!("CARGO_PKG_VERSION"), &optics.medium, &optics.species, &optics.albedo, &radius, resolution];
+        [&METHOD, &env!("CARGO_PKG_VERSION"), &optics.medium, &optics.species, &optics.albedo, &radius, &resolutions];
     for input in inputs {
         // Hashing does not fail.
         let _ = write!(hashed, "{input:?};");

@@ -1,11 +1,13 @@
 //! The first order: sunlight scattered once, or reflected by the ground, on its way along each line.
 
 use super::Setup;
+use super::grid::nearest;
 use super::harmonics::legendre;
-use super::line::{MOST_SPECIES, Rule, Sum, crossings, quadrature};
-use super::orders::{Gathered, Turns, azimuth_cosines};
+use super::line::{Rule, Take, crossings, quadrature};
+use super::orders::{Gathered, LANES, Turns};
 use super::rays::Line;
 use crate::geometry::Place;
+use crate::vectors::add_product;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_1_PI;
@@ -37,6 +39,16 @@ struct Row {
 
 /// Nodes of a row.
 const NODES: usize = 384;
+
+/// Linearly between two rows.
+#[inline(always)]
+fn between<const L: usize>(a: &[f32; L], b: &[f32; L], fraction: f32) -> [f32; L] {
+    let (mut between, b) = (*a, *b);
+    for j in 0..L {
+        between[j] += fraction * (b[j] - between[j]);
+    }
+    between
+}
 
 impl<const L: usize> Sunlight<L> {
     /// Sunlight at the levels and at `parts - 1` altitudes between each two.
@@ -87,18 +99,18 @@ impl<const L: usize> Sunlight<L> {
 
     /// Where in a row the suns of these cosines are: the node before each, and the fraction to the next.
     #[inline(always)]
-    fn locate<const N: usize>(&self, row: usize, cosines: &[f32; N]) -> ([i32; N], [f32; N]) {
+    fn locate(&self, row: usize, cosines: &[f32; LANES]) -> ([i32; LANES], [f32; LANES]) {
         let Row { room, radius, least, scale, .. } = self.rows[row];
-        let (mut nodes, mut fractions) = ([0; N], [0.0; N]);
-        for i in 0..N {
+        let (mut nodes, mut fractions) = ([0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
             let along = radius * cosines[i];
             let root = (room + along * along).sqrt();
             // In the form that adds numbers of one sign.
             let d = if along > 0.0 { room / (root + along) } else { root - along };
             let at = ((d - least) * scale).clamp(0.0, 1.0) * (NODES - 1) as f32;
-            let node = at.min((NODES - 2) as f32) as i32;
+            let (node, whole) = nearest((at - 0.5).max(0.0).min((NODES - 2) as f32));
             nodes[i] = node;
-            fractions[i] = at - node as f32;
+            fractions[i] = at - whole;
         }
         (nodes, fractions)
     }
@@ -107,8 +119,7 @@ impl<const L: usize> Sunlight<L> {
     #[inline(always)]
     fn at(&self, row: usize, node: i32, fraction: f32) -> [f32; L] {
         let node = row * NODES + node as usize;
-        let (a, b) = (&self.values[node], &self.values[node + 1]);
-        std::array::from_fn(|j| a[j] + fraction * (b[j] - a[j]))
+        between(&self.values[node], &self.values[node + 1], fraction)
     }
 
     /// Transmittance to a sun on the horizon.
@@ -157,8 +168,7 @@ impl<const L: usize> Scattering<L> {
         let at = (0.5 * (cosine + 1.0)).clamp(0.0, 1.0) * Self::STEPS as f32;
         let i = (at as usize).min(Self::STEPS - 1);
         let f = at - i as f32;
-        let (a, b) = (&self.values[species][i], &self.values[species][i + 1]);
-        std::array::from_fn(|j| a[j] + f * (b[j] - a[j]))
+        between(&self.values[species][i], &self.values[species][i + 1], f)
     }
 }
 
@@ -166,9 +176,44 @@ impl<const L: usize> Scattering<L> {
 struct Step<const L: usize> {
     row: usize,
     frame: [f32; 2],
-    /// What the way from the crossing before scatters, and that to the next, half of each: of each species.
-    before: Vec<[f32; L]>,
-    after: Vec<[f32; L]>,
+    /// Of each species.
+    ways: Vec<Ways<L>>,
+}
+
+/// What the air about a crossing scatters, if transmittance to the sun is linear between two crossings and 1 at this one.
+#[derive(Clone, Copy)]
+struct Ways<const L: usize> {
+    /// Before and after the crossing, and their sum.
+    before: [f32; L],
+    after: [f32; L],
+    both: [f32; L],
+    /// Half of all that the way from the crossing before scatters.
+    half: [f32; L],
+}
+
+impl<const L: usize> Ways<L> {
+    const NOTHING: Self = Self { before: [0.0; L], after: [0.0; L], both: [0.0; L], half: [0.0; L] };
+}
+
+/// Takes the integrals of what is scattered between two crossings times the lines that fall from 1 to 0 and rise from 0 to 1.
+struct Hats<'a, const L: usize> {
+    from: f64,
+    to: f64,
+    falling: &'a mut [[f64; L]],
+    rising: &'a mut [[f64; L]],
+}
+
+impl<const L: usize> Take<L> for Hats<'_, L> {
+    #[inline(always)]
+    fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
+        let share = (s - self.from) / (self.to - self.from);
+        for ((falling, rising), one) in self.falling.iter_mut().zip(self.rising.iter_mut()).zip(scattered) {
+            for j in 0..L {
+                falling[j] += (1.0 - share) * one[j];
+                rising[j] += share * one[j];
+            }
+        }
+    }
 }
 
 /// Moments at a level (of a sun, of each (l, m)) of the first order, and, of use at the ground, the irradiance from above.
@@ -182,11 +227,16 @@ pub(super) fn scatter<const L: usize, const AZIMUTHS: usize>(
 ) -> (Vec<[f32; L]>, Vec<[f32; L]>) {
     let suns = &setup.grid.suns;
     let mut sum = Gathered::new(setup.optics.moments.count(), suns.count());
-    let mut radiance = vec![[[0.0; L]; AZIMUTHS]; suns.count()];
+    let mut light = Light::new(suns.batches::<AZIMUTHS>(), setup.optics.species.len());
     for line in lines {
         let steps = steps(setup, level, line.zenith, sunlight);
-        along(setup, line, &steps, sunlight, scattering, &mut radiance);
-        sum.add(line, &setup.optics.moments, &radiance);
+        let turns = Turns::new::<AZIMUTHS>(line.zenith, suns);
+        light.clear();
+        for (i, step) in steps.iter().enumerate() {
+            light.pass(&turns, sunlight, (i > 0).then(|| &steps[i - 1]), step);
+        }
+        light.arrive(setup, line, &turns, sunlight, scattering);
+        sum.add::<AZIMUTHS>(line, &setup.optics.moments, &light.radiance);
     }
     (sum.moments, sum.ground)
 }
@@ -201,116 +251,155 @@ fn steps<const L: usize>(setup: &Setup<'_, L>, level: usize, zenith: f64, sunlig
     let from = chord.ends().0;
     let places = crossings(&chord, &sunlight.altitudes, from);
     let start = grid.level_radius(level);
-    let nothing = vec![[0.0; L]; setup.optics.species.len()];
+    let species = setup.optics.species.len();
     let mut steps: Vec<Step<L>> = Vec::with_capacity(places.len());
     let mut last: Option<f64> = None;
+    let (mut falling, mut rising) = (vec![[0.0; L]; species], vec![[0.0; L]; species]);
     for place in &places {
-        let mut scattered = vec![[0.0; L]; setup.optics.species.len()];
+        falling.fill([0.0; L]);
+        rising.fill([0.0; L]);
         if let Some(last) = last {
-            let ends = (last, place.s);
             let rule = Rule { fine: false, least: 1.0, bends: &grid.bends };
-            let lit = quadrature(&chord, setup.optics, ends, rule, &mut Sum(&mut scattered));
-            if !lit {
+            let mut hats = Hats { from: last, to: place.s, falling: &mut falling, rising: &mut rising };
+            if !quadrature(&chord, setup.optics, (last, place.s), rule, &mut hats) {
                 break;
             }
         }
         last = Some(place.s);
-        let r = grid.radius + sunlight.altitudes[place.level];
-        let half: Vec<[f32; L]> = scattered.into_iter().map(|row| row.map(|v| 0.5 * v as f32)).collect();
-        if let Some(step) = steps.last_mut() {
-            step.after.clone_from(&half);
+        let mut ways = vec![Ways::NOTHING; species];
+        for (((way, before), falling), rising) in
+            ways.iter_mut().zip(steps.last_mut().into_iter().flat_map(|step| &mut step.ways)).zip(&falling).zip(&rising)
+        {
+            before.after = falling.map(|v| v as f32);
+            way.before = rising.map(|v| v as f32);
+            for j in 0..L {
+                before.both[j] += before.after[j];
+                way.both[j] = way.before[j];
+                way.half[j] = 0.5 * (before.after[j] + way.before[j]);
+            }
         }
-        steps.push(Step {
-            row: place.level,
-            frame: [(start / r) as f32, ((place.s - from) / r) as f32],
-            before: half,
-            after: nothing.clone(),
-        });
+        let r = grid.radius + sunlight.altitudes[place.level];
+        steps.push(Step { row: place.level, frame: [(start / r) as f32, ((place.s - from) / r) as f32], ways });
     }
     steps
 }
 
-/// Radiance along a line, for each sun and azimuth: transmittance to the sun is taken for linear between two crossings.
-#[inline(always)]
-fn along<const L: usize, const AZIMUTHS: usize>(
-    setup: &Setup<'_, L>,
-    line: &Line<L>,
-    steps: &[Step<L>],
-    sunlight: &Sunlight<L>,
-    scattering: &Scattering<L>,
-    radiance: &mut [[[f32; L]; AZIMUTHS]],
-) {
-    let turns = Turns::new(line.zenith, &azimuth_cosines::<AZIMUTHS>());
-    let species = setup.optics.species.len();
-    let mut sums = [[[0.0_f32; L]; MOST_SPECIES]; AZIMUTHS];
-    for (sun, radiance) in setup.grid.suns.sines_cosines.iter().zip(radiance) {
-        for sums in &mut sums {
-            sums[..species].fill([0.0; L]);
+/// Sunlight scattered into a line, for each sun and azimuth: transmittance to the sun is taken for linear between two crossings.
+struct Light<const L: usize> {
+    /// Of each species in turn for each batch.
+    sums: Vec<[[f32; L]; LANES]>,
+    /// How far above the horizon the suns of each batch were at the crossing before.
+    above: Vec<[f32; LANES]>,
+    radiance: Vec<[f32; L]>,
+}
+
+impl<const L: usize> Light<L> {
+    fn new(batches: usize, species: usize) -> Self {
+        Self {
+            sums: vec![[[0.0; L]; LANES]; batches * species],
+            above: vec![[0.0; LANES]; batches],
+            radiance: vec![[0.0; L]; batches * LANES],
         }
-        // How far above the horizon the sun was at the crossing before.
-        let mut last = [0.0_f32; AZIMUTHS];
-        for (i, step) in steps.iter().enumerate() {
-            let (_, there) = turns.seen_from(*sun, step.frame);
+    }
+
+    fn clear(&mut self) {
+        self.sums.fill([[0.0; L]; LANES]);
+    }
+
+    /// Adds what is scattered about a crossing.
+    #[inline(always)]
+    fn pass(&mut self, turns: &Turns, sunlight: &Sunlight<L>, before: Option<&Step<L>>, step: &Step<L>) {
+        let states = self.above.iter_mut().zip(self.sums.chunks_exact_mut(step.ways.len().max(1)));
+        for (batch, (above, sums)) in turns.batches.iter().zip(states) {
+            let there = batch.there(step.frame);
+            let mut now = [0.0; LANES];
+            for i in 0..LANES {
+                now[i] = sunlight.above(step.row, there[i]);
+            }
+            let last = std::mem::replace(above, now);
+            let lit = |above: &[f32; LANES]| above.iter().filter(|above| **above > 0.0).count();
+            let (lit, was_lit) = (lit(&now), if before.is_some() { lit(&last) } else { lit(&now) });
+            if lit == 0 && was_lit == 0 {
+                continue;
+            }
             let (nodes, fractions) = sunlight.locate(step.row, &there);
-            for a in 0..AZIMUTHS {
-                let above = sunlight.above(step.row, there[a]);
-                let sums = &mut sums[a][..species];
-                if above > 0.0 {
-                    let through = sunlight.at(step.row, nodes[a], fractions[a]);
-                    // If the sun rose or sets on the way, that way's part has to be cut.
-                    let rose = i > 0 && last[a] <= 0.0;
-                    if rose {
-                        let share = above / (above - last[a]);
+            if lit == LANES && was_lit == LANES {
+                for i in 0..LANES {
+                    let through = sunlight.at(step.row, nodes[i], fractions[i]);
+                    for (sum, way) in sums.iter_mut().zip(&step.ways) {
+                        add_product(&mut sum[i], &way.both, &through);
+                    }
+                }
+                continue;
+            }
+            for i in 0..LANES {
+                let through = sunlight.at(step.row, nodes[i], fractions[i]);
+                match (now[i] > 0.0, before) {
+                    (true, Some(_)) if last[i] <= 0.0 => {
+                        // The sun rose on the way: only its last part is lit.
+                        let share = now[i] / (now[i] - last[i]);
                         let horizon = sunlight.at_horizon(step.row);
-                        for ((sum, before), after) in sums.iter_mut().zip(&step.before).zip(&step.after) {
+                        for (sum, way) in sums.iter_mut().zip(&step.ways) {
                             for j in 0..L {
-                                sum[j] += before[j] * share * (through[j] + horizon[j]) + after[j] * through[j];
-                            }
-                        }
-                    } else {
-                        for ((sum, before), after) in sums.iter_mut().zip(&step.before).zip(&step.after) {
-                            for j in 0..L {
-                                sum[j] += (before[j] + after[j]) * through[j];
+                                sum[i][j] +=
+                                    way.half[j] * share * (through[j] + horizon[j]) + way.after[j] * through[j];
                             }
                         }
                     }
-                } else if i > 0 && last[a] > 0.0 {
-                    // The crossing before counted for all the way to here.
-                    let before = &steps[i - 1];
-                    let (_, there) = turns.seen_from(*sun, before.frame);
-                    let (nodes, fractions) = sunlight.locate(before.row, &there);
-                    let through = sunlight.at(before.row, nodes[a], fractions[a]);
-                    let share = last[a] / (last[a] - above);
-                    let horizon = sunlight.at_horizon(before.row);
-                    for (sum, way) in sums.iter_mut().zip(&step.before) {
+                    (true, _) => {
+                        for (sum, way) in sums.iter_mut().zip(&step.ways) {
+                            add_product(&mut sum[i], &way.both, &through);
+                        }
+                    }
+                    (false, Some(before)) if last[i] > 0.0 => {
+                        // The sun set on the way, and the crossing before counted for all of it.
+                        let (nodes, fractions) = sunlight.locate(before.row, &batch.there(before.frame));
+                        let through = sunlight.at(before.row, nodes[i], fractions[i]);
+                        let share = last[i] / (last[i] - now[i]);
+                        let horizon = sunlight.at_horizon(before.row);
+                        for ((sum, way), before) in sums.iter_mut().zip(&step.ways).zip(&before.ways) {
+                            for j in 0..L {
+                                sum[i][j] +=
+                                    way.half[j] * share * (through[j] + horizon[j]) - before.after[j] * through[j];
+                            }
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    /// Makes radiance of it, with the sunlight that the ground reflects.
+    #[inline(always)]
+    fn arrive(
+        &mut self,
+        setup: &Setup<'_, L>,
+        line: &Line<L>,
+        turns: &Turns,
+        sunlight: &Sunlight<L>,
+        scattering: &Scattering<L>,
+    ) {
+        let species = setup.optics.species.len();
+        let batches = turns.batches.iter().zip(self.radiance.as_chunks_mut::<LANES>().0);
+        for (b, (batch, radiance)) in batches.enumerate() {
+            *radiance = [[0.0; L]; LANES];
+            for (index, sums) in self.sums[b * species..(b + 1) * species].iter().enumerate() {
+                for i in 0..LANES {
+                    let phase = scattering.at(index, batch.towards[i]);
+                    add_product(&mut radiance[i], &phase, &sums[i]);
+                }
+            }
+            if let Some(foot) = &line.foot {
+                let there = batch.there(foot.frame);
+                let (nodes, fractions) = sunlight.locate(0, &there);
+                for i in 0..LANES {
+                    if there[i] > 0.0 {
+                        let through = sunlight.at(0, nodes[i], fractions[i]);
+                        let factor = there[i] * FRAC_1_PI as f32;
                         for j in 0..L {
-                            sum[j] += way[j] * (share * (through[j] + horizon[j]) - through[j]);
+                            radiance[i][j] += factor * setup.optics.albedo[j] as f32 * foot.through[j] * through[j];
                         }
-                    }
-                }
-                last[a] = above;
-            }
-        }
-        let (towards, _) = turns.seen_from(*sun, [1.0, 0.0]);
-        for a in 0..AZIMUTHS {
-            let mut total = [0.0_f32; L];
-            for (index, sum) in sums[a][..species].iter().enumerate() {
-                let phase = scattering.at(index, towards[a]);
-                for j in 0..L {
-                    total[j] += phase[j] * sum[j];
-                }
-            }
-            radiance[a] = total;
-        }
-        if let Some(foot) = &line.foot {
-            let (_, there) = turns.seen_from(*sun, foot.frame);
-            let (nodes, fractions) = sunlight.locate(0, &there);
-            for a in 0..AZIMUTHS {
-                if there[a] > 0.0 {
-                    let through = sunlight.at(0, nodes[a], fractions[a]);
-                    let factor = there[a] * FRAC_1_PI as f32;
-                    for j in 0..L {
-                        radiance[a][j] += factor * setup.optics.albedo[j] as f32 * foot.through[j] * through[j];
                     }
                 }
             }

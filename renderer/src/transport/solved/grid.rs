@@ -3,7 +3,7 @@
 use crate::atmosphere::Medium;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// How fine a solution is.
+/// How fine a solution is; where phase functions have peaks, with a quarter more altitudes and half as many more zenith angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resolution {
     /// Number of altitudes.
@@ -27,6 +27,8 @@ pub(super) struct Grid {
     pub(super) radius: f64,
     /// Altitudes in m, from the ground to the top.
     pub(super) levels: Vec<f64>,
+    /// Levels at which scattering jumps so much that the field bends: no polynomial reaches over them.
+    pub(super) walls: Vec<bool>,
     /// Altitudes in m between levels at which quadratures are divided.
     pub(super) bends: Vec<f64>,
     pub(super) suns: Suns,
@@ -108,8 +110,8 @@ impl Suns {
             let x = (chi - self.centre) * self.per_width;
             let u = chi * self.per_spacing + self.crowd * x / (1.0 + x * x).sqrt();
             let at = (u - self.first) * self.per_step;
-            let first = (at - 1.0).max(0.0).min(last - 3.0) as i32;
-            let x = at - first as f32;
+            let (first, whole) = nearest((at - 1.5).max(0.0).min(last - 3.0));
+            let x = at - whole;
             // The rounding of the last angle is not beyond it.
             let lit = if at <= last + 1e-2 { 1.0 } else { 0.0 };
             let (a, b, c) = (x - 1.0, x - 2.0, x - 3.0);
@@ -122,6 +124,14 @@ impl Suns {
         }
         between
     }
+}
+
+/// The whole number nearest to a number from 0 to 4e6, also as a float: added to 2^23 it is in the last bits.
+#[inline(always)]
+pub(super) fn nearest(x: f32) -> (i32, f32) {
+    const SHIFT: f32 = 8_388_608.0;
+    let shifted = x + SHIFT;
+    ((shifted.to_bits() - SHIFT.to_bits()) as i32, shifted - SHIFT)
 }
 
 /// The angle with this cosine in radians, to 1e-7 and the rounding of the cosine (Abramowitz & Stegun 1964, 4.4.46).
@@ -149,7 +159,14 @@ impl Grid {
         let levels = levels(medium, resolution.levels);
         let mut bends = medium.bends();
         bends.retain(|bend| !levels.contains(bend));
-        Self { bends, radius, suns: Suns::new(resolution.suns, radius, medium.top_m()), levels }
+        let jumps = medium.jumps();
+        let jumps_at = |h: &f64| {
+            const NEAR_M: f64 = 1e-3;
+            let [below, above] = [-NEAR_M, NEAR_M].map(|off| medium.local_at(h + off).scattering);
+            jumps.contains(h) && below.iter().zip(&above).any(|(a, b)| (a - b).abs() > WALL * a.max(*b))
+        };
+        let walls = levels.iter().map(jumps_at).collect();
+        Self { bends, radius, walls, suns: Suns::new(resolution.suns, radius, medium.top_m()), levels }
     }
 
     /// Radius of a level in m.
@@ -179,6 +196,9 @@ impl Grid {
         all
     }
 }
+
+/// Share of the scattering coefficient by which it changes at a wall.
+const WALL: f64 = 0.3;
 
 /// Altitudes at equal steps of a measure that goes half with a power of the altitude, half with the scatterers below;
 /// where the density of a scatterer jumps, there is a level.

@@ -5,14 +5,18 @@
 //! the addition theorem has no factors: for two directions with the azimuths phi and phi'
 //! P_l(cos Theta) = sum_m S_lm(mu) S_lm(mu') cos(m (phi - phi')).
 
+use std::ops::Range;
+
 /// Number of the moments that molecules need: (l, m) = (0, 0), (2, 0), (2, 1), (2, 2).
 pub(super) const RAYLEIGH: usize = 4;
 
-/// The moments of a field, those that molecules need first.
+/// The moments of a field, those that molecules need first, then by their orders m.
 #[derive(Debug, Clone)]
 pub(super) struct Moments {
     /// Degree l and order m of each.
     pairs: Vec<(usize, usize)>,
+    /// Which of them follow each other with the same m.
+    runs: Vec<(usize, Range<usize>)>,
     degree: usize,
     /// Of m and of l.
     steps: Vec<Step>,
@@ -23,15 +27,22 @@ impl Moments {
     pub(super) fn new(degree: usize) -> Self {
         let mut pairs = vec![(0, 0), (2, 0), (2, 1), (2, 2)];
         if degree > 2 {
-            pairs.extend([(1, 0), (1, 1)]);
-            pairs.extend((3..=degree).flat_map(|l| (0..=l).map(move |m| (l, m))));
+            let all = (0..=degree).flat_map(|m| (m..=degree).map(move |l| (l, m)));
+            pairs.extend(all.filter(|&(l, _)| l == 1 || l > 2));
         }
         let degree = degree.max(2);
+        let mut runs: Vec<(usize, Range<usize>)> = Vec::new();
+        for (i, &(_, m)) in pairs.iter().enumerate() {
+            match runs.last_mut() {
+                Some((last, run)) if *last == m => run.end = i + 1,
+                _ => runs.push((m, i..i + 1)),
+            }
+        }
         let step = |m: usize, l: usize| {
             if l < m { Step::default() } else { Step::to(l, m, pairs.iter().position(|pair| *pair == (l, m))) }
         };
         let steps = (0..=degree).flat_map(|m| (0..=degree).map(move |l| (m, l))).map(|(m, l)| step(m, l)).collect();
-        Self { pairs, degree, steps }
+        Self { pairs, runs, degree, steps }
     }
 
     /// How many there are.
@@ -47,6 +58,17 @@ impl Moments {
     /// Degree and order of each.
     pub(super) fn pairs(&self) -> &[(usize, usize)] {
         &self.pairs
+    }
+
+    /// How many come before the first of an order m of so many or more: all with fewer.
+    pub(super) fn count_below(&self, orders: usize) -> usize {
+        self.pairs.iter().position(|&(_, m)| m >= orders.max(3)).unwrap_or(self.pairs.len())
+    }
+
+    /// Of the first `count`, which follow each other with the same m.
+    #[inline(always)]
+    pub(super) fn runs(&self, count: usize) -> impl Iterator<Item = (usize, Range<usize>)> {
+        self.runs.iter().take_while(move |(_, run)| run.start < count).map(|(m, run)| (*m, run.clone()))
     }
 
     /// S_lm(mu) of each: S_mm = sqrt((2m - 1) / (2m)) sin S_(m-1)(m-1), and from there
@@ -99,6 +121,7 @@ impl Step {
 pub(super) const MOST_DEGREE: usize = 24;
 
 /// Legendre polynomials P_0 to P_degree at `c`.
+#[inline(always)]
 pub(super) fn legendre(degree: usize, c: f64) -> Vec<f64> {
     let mut values = vec![1.0, c];
     for l in 2..=degree {

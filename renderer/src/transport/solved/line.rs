@@ -49,10 +49,13 @@ pub(super) struct Stencil {
 }
 
 impl Stencil {
-    /// Around the interval between places `i` and `i + 1` of `all`.
-    pub(super) fn around(i: usize, all: usize) -> Self {
-        let count = all.min(4);
-        Self { first: i.saturating_sub(1).min(all - count), count }
+    /// Around the interval between places `i` and `i + 1`, not beyond a wall.
+    pub(super) fn around(i: usize, places: &[Crossing], walls: &[bool]) -> Self {
+        let wall = |k: &usize| walls[places[*k].level];
+        let low = (0..=i).rev().find(wall).unwrap_or(0);
+        let high = (i + 1..places.len()).find(wall).unwrap_or(places.len() - 1);
+        let count = (high + 1 - low).min(4);
+        Self { first: i.saturating_sub(1).max(low).min(high + 1 - count), count }
     }
 
     /// Weights at `s`.
@@ -83,20 +86,6 @@ pub(super) trait Take<const L: usize> {
     /// A point, and of each species the weight of the point in m, times the transmittance to the chord's beginning, times the
     /// scattering coefficient.
     fn take(&mut self, s: f64, scattered: &[[f64; L]]);
-}
-
-/// Takes the sum over all points.
-pub(super) struct Sum<'a, const L: usize>(pub(super) &'a mut [[f64; L]]);
-
-impl<const L: usize> Take<L> for Sum<'_, L> {
-    #[inline(always)]
-    fn take(&mut self, _s: f64, scattered: &[[f64; L]]) {
-        for (sum, one) in self.0.iter_mut().zip(scattered) {
-            for j in 0..L {
-                sum[j] += one[j];
-            }
-        }
-    }
 }
 
 /// Takes the sum over all points times Lagrange's polynomials through the crossings around an interval: weights of the
@@ -216,3 +205,23 @@ const MOST_BENDS: usize = 16;
 
 /// The most species that scatter.
 pub(super) const MOST_SPECIES: usize = crate::atmosphere::MAX_COMPONENTS;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_do_not_reach_over_walls() {
+        let places: Vec<Crossing> = (0..9).map(|level| Crossing { level, s: level as f64 }).collect();
+        let of = |i: usize, walls: &[usize]| {
+            let walls: Vec<bool> = (0..9).map(|level| walls.contains(&level)).collect();
+            let Stencil { first, count } = Stencil::around(i, &places, &walls);
+            (first, count)
+        };
+        let all: Vec<_> = (0..8).map(|i| of(i, &[4])).collect();
+        assert_eq!(all, [(0, 4), (0, 4), (1, 4), (1, 4), (4, 4), (4, 4), (5, 4), (5, 4)]);
+        // Of a layer with one level inside a parabola is left, of one with none a line.
+        assert_eq!((of(4, &[4, 6]), of(5, &[4, 6])), ((4, 3), (4, 3)));
+        assert_eq!(of(4, &[4, 5]), (4, 2));
+    }
+}

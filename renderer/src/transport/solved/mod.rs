@@ -45,10 +45,10 @@ use glam::DVec3;
 use grid::Grid;
 use harmonics::{MOST_DEGREE, Moments, RAYLEIGH};
 use mix::Mixer;
-use orders::{Around, Field};
+use orders::{AZIMUTHS, Around, FEW_AZIMUTHS, Field};
 use pulp::NullaryFnOnce;
 use rayon::prelude::*;
-use rays::Line;
+use rays::{Line, Lines};
 use species::Species;
 use std::f64::consts::FRAC_1_PI;
 use std::path::Path;
@@ -81,6 +81,8 @@ fn off(error: f64) -> String {
 pub struct Solved<const L: usize> {
     optics: Arc<Optics<L>>,
     grid: Grid,
+    /// Its own, and those of the solutions from which it was begun, the first of all last.
+    resolutions: Vec<Resolution>,
     field: Field<L>,
     orders: usize,
     residual: f64,
@@ -139,13 +141,18 @@ struct Setup<'a, const L: usize> {
 
 impl Resolution {
     /// What the renderer takes.
-    pub const RENDER: Self = Self { levels: 22, suns: 40, zeniths: [7, 4, 5], parts: 8, degree: 14, change: 5e-4 };
+    pub const RENDER: Self = Self { levels: 16, suns: 40, zeniths: [6, 3, 4], parts: 6, degree: 14, change: 5e-4 };
 
     /// What reference cases take: also the twilight limb seen from space.
-    pub const FINE: Self = Self { levels: 32, suns: 48, zeniths: [10, 6, 8], parts: 8, degree: 20, change: 2e-4 };
+    pub const FINE: Self = Self { levels: 28, suns: 48, zeniths: [10, 6, 8], parts: 8, degree: 20, change: 2e-4 };
 
     /// A coarser one, whose distance from [`Resolution::RENDER`] tells how far that is from the truth.
-    pub const COARSE: Self = Self { levels: 16, suns: 33, zeniths: [5, 3, 4], parts: 4, degree: 14, change: 5e-4 };
+    pub const COARSE: Self = Self { levels: 12, suns: 30, zeniths: [4, 3, 3], parts: 4, degree: 14, change: 5e-4 };
+
+    /// Where phase functions have peaks: higher moments want closer directions, layers more levels.
+    fn peaked(self) -> Self {
+        Self { levels: self.levels + self.levels / 4, zeniths: self.zeniths.map(|n| n + n / 2), ..self }
+    }
 }
 
 /// Solved tables of an atmosphere, as fine as an error asks for.
@@ -175,14 +182,14 @@ impl<const L: usize> Tables<L> {
         (medium, shape, albedo): (&Medium<L>, Shape, [f64; L]),
         kept: Option<&Path>,
     ) -> Result<Self, SolveError> {
-        let solved = Solved::kept(medium, shape, albedo, &Resolution::RENDER, kept)?;
-        let coarser = solved.again(&Resolution::COARSE, kept)?;
+        let coarser = Solved::kept(medium, shape, albedo, &Resolution::COARSE, kept)?;
+        let solved = coarser.again(&Resolution::RENDER, kept)?;
         let hidden = if solved.optics.moments.degree() > 2 { HIDDEN } else { 0.0 };
         let usual = Self { solved, coarser, hidden };
         if usual.error(from, sun) <= error {
             return Ok(usual);
         }
-        let solved = Solved::kept(medium, shape, albedo, &Resolution::FINE, kept)?;
+        let solved = Solved::begun(medium, shape, albedo, &Resolution::FINE, (kept, Some(&usual.solved)))?;
         Ok(Self { solved, coarser: usual.solved, hidden: 0.0 })
     }
 
@@ -231,6 +238,17 @@ impl<const L: usize> Solved<L> {
         resolution: &Resolution,
         kept: Option<&Path>,
     ) -> Result<Self, SolveError> {
+        Self::begun(medium, shape, albedo, resolution, (kept, None))
+    }
+
+    /// As [`Solved::kept`], begun from a coarser solution.
+    fn begun(
+        medium: &Medium<L>,
+        shape: Shape,
+        albedo: [f64; L],
+        resolution: &Resolution,
+        (kept, start): (Option<&Path>, Option<&Self>),
+    ) -> Result<Self, SolveError> {
         let Shape::Sphere { radius_m } = shape else { return Err(SolveError::Refused(ROUND)) };
         if resolution.levels < 4 || resolution.suns < 4 || resolution.parts < 1 || resolution.degree > MOST_DEGREE {
             return Err(SolveError::Refused(SIZES));
@@ -240,7 +258,7 @@ impl<const L: usize> Solved<L> {
         let columns = Columns::new(&medium, shape, Tolerance::SOLVE);
         let aureole = Aureole::new(&species, &medium, shape)?;
         let optics = Optics { moments: Moments::new(degree), species, medium, columns, aureole, albedo };
-        Self::with(Arc::new(optics), radius_m, resolution, kept)
+        Self::with(Arc::new(optics), radius_m, resolution, (kept, start))
     }
 
     /// The first order alone, with nothing cut off the phase functions: only [`Solved::radiance`] with `single` is of use.
@@ -255,21 +273,26 @@ impl<const L: usize> Solved<L> {
         let (moments, aureole) = (Moments::new(2), Aureole::none());
         let optics = Optics { moments, species, medium, columns, aureole, albedo };
         let field = Field { moments: Vec::new(), ground: Vec::new() };
-        Ok(Self { optics: Arc::new(optics), grid, field, orders: 1, residual: 0.0 })
+        let resolutions = vec![Resolution::FINE];
+        Ok(Self { optics: Arc::new(optics), grid, resolutions, field, orders: 1, residual: 0.0 })
     }
 
     fn with(
         optics: Arc<Optics<L>>,
         radius: f64,
         resolution: &Resolution,
-        kept: Option<&Path>,
+        (kept, start): (Option<&Path>, Option<&Self>),
     ) -> Result<Self, SolveError> {
-        let grid = Grid::new(&optics.medium, radius, resolution);
-        let solve = || Setup { grid: &grid, optics: &optics }.solve(resolution);
+        let fine = if optics.moments.degree() > 2 { resolution.peaked() } else { *resolution };
+        let grid = Grid::new(&optics.medium, radius, &fine);
+        let begin = || start.map(|start| start.field.on(&start.grid, &start.optics.moments, &grid, &optics.moments));
+        let solve = || Setup { grid: &grid, optics: &optics }.solve(&fine, begin());
+        let resolutions: Vec<_> =
+            std::iter::once(resolution).chain(start.iter().flat_map(|start| &start.resolutions)).copied().collect();
         let (field, orders, residual) = match kept {
             None => solve(),
             Some(folder) => {
-                let (key, moments) = (file::key(&optics, radius, resolution), optics.moments.count());
+                let (key, moments) = (file::key(&optics, radius, &resolutions), optics.moments.count());
                 let path = file::path(folder, &key);
                 if path.exists() {
                     file::solution(&tables::file::read(&path)?, &grid, moments, &key)
@@ -281,15 +304,16 @@ impl<const L: usize> Solved<L> {
                 }
             }
         };
-        Ok(Self { optics, grid, field, orders, residual })
+        Ok(Self { optics, grid, resolutions, field, orders, residual })
     }
 
-    /// The same atmosphere solved again, with as many moments, on another grid; or taken from a folder as by [`Solved::kept`].
+    /// The same atmosphere solved again, with as many moments, on another grid; or taken from a folder as by [`Solved::kept`]. What
+    /// is known already saves orders on a finer grid.
     ///
     /// # Errors
     /// [`SolveError::Kept`], which is none without a folder.
     pub fn again(&self, resolution: &Resolution, kept: Option<&Path>) -> Result<Self, SolveError> {
-        Self::with(Arc::clone(&self.optics), self.grid.radius, resolution, kept)
+        Self::with(Arc::clone(&self.optics), self.grid.radius, resolution, (kept, Some(self)))
     }
 
     /// Root mean square over 64 directions and all wavelengths of the difference to the radiances of another solution of the same
@@ -330,14 +354,12 @@ impl<const L: usize> Solved<L> {
 }
 
 impl<const L: usize> Setup<'_, L> {
-    fn solve(&self, resolution: &Resolution) -> (Field<L>, usize, f64) {
+    /// The field, from a guess of it if there is one; the orders that it took, and the change that the last of them made.
+    fn solve(&self, resolution: &Resolution, start: Option<Field<L>>) -> (Field<L>, usize, f64) {
         let levels = self.grid.levels.len();
-        // Higher moments want closer directions.
-        let zeniths =
-            if self.optics.moments.degree() > 2 { resolution.zeniths.map(|n| n + n / 2) } else { resolution.zeniths };
         let lines: Vec<_> = (0..levels)
             .into_par_iter()
-            .map(|level| rays::lines(self, level, &self.grid.zeniths(level, zeniths)))
+            .map(|level| Lines::new(self, level, &self.grid.zeniths(level, resolution.zeniths)))
             .collect();
         let sunlight = Sunlight::new(self, resolution.parts);
         let scattering = Scattering::new(self);
@@ -347,7 +369,13 @@ impl<const L: usize> Setup<'_, L> {
             Field { moments: parts.into_iter().flat_map(|(moments, _)| moments).collect(), ground }
         };
         let first = collect(&|level| {
-            vectorised(First { setup: self, level, lines: &lines[level], sunlight: &sunlight, scattering: &scattering })
+            vectorised(First {
+                setup: self,
+                level,
+                lines: &lines[level].lines,
+                sunlight: &sunlight,
+                scattering: &scattering,
+            })
         });
         let reflected = self.optics.albedo.map(|a| (a * FRAC_1_PI) as f32);
         let step = |field: &Field<L>| {
@@ -357,7 +385,7 @@ impl<const L: usize> Setup<'_, L> {
             })
         };
         let mut mixer = Mixer::new(&first, self.optics.moments.count());
-        let mut field = first.clone();
+        let mut field = start.unwrap_or_else(|| first.clone());
         let mut orders = 1;
         loop {
             let mut next = step(&field);
@@ -409,7 +437,11 @@ impl<const L: usize> NullaryFnOnce for Next<'_, L> {
 
     #[inline(always)]
     fn call(self) -> Moved<L> {
-        self.around.scatter::<8>(self.field)
+        if self.around.moments.degree() > 2 {
+            self.around.scatter::<AZIMUTHS>(self.field)
+        } else {
+            self.around.scatter::<FEW_AZIMUTHS>(self.field)
+        }
     }
 }
 

@@ -1,8 +1,11 @@
 //! From the moments of all light to those of the light that it becomes by one more scattering or reflection.
 
-use super::grid::Suns;
+use super::grid::{Between, Grid, Suns};
 use super::harmonics::{Moments, RAYLEIGH};
-use super::rays::{Line, Node};
+use super::line::{Crossing, Stencil};
+use super::rays::{Foot, Line, Lines, Node};
+use crate::vectors::{add_product, add_scaled};
+use rayon::prelude::*;
 use std::f32::consts::PI;
 
 /// A diffuse field: all light but the sun's own.
@@ -14,9 +17,67 @@ pub(super) struct Field<const L: usize> {
     pub(super) ground: Vec<[f32; L]>,
 }
 
+impl<const L: usize> Field<L> {
+    /// The field between the places of its own grid, at those of another, with the moments that this has.
+    pub(super) fn on(&self, own: &Grid, moments: &Moments, grid: &Grid, wanted: &Moments) -> Self {
+        let suns: Vec<_> = grid.suns.sines_cosines.iter().map(|(_, cosine)| own.suns.locate(&[*cosine])).collect();
+        let between = |rows: &dyn Fn(usize) -> [f32; L], Between { first: [first], weights }: &Between<1>| {
+            let mut sum = [0.0; L];
+            for (k, [weight]) in weights.iter().enumerate() {
+                let row = rows(*first as usize + k);
+                for j in 0..L {
+                    sum[j] += weight * row[j];
+                }
+            }
+            sum
+        };
+        // In a measure in which the levels are not too uneven.
+        let measure = |h: f64| (h / own.levels[own.levels.len() - 1]).max(0.0).powf(0.4);
+        let places: Vec<_> =
+            own.levels.iter().enumerate().map(|(level, h)| Crossing { level, s: measure(*h) }).collect();
+        let columns: Vec<Option<usize>> =
+            wanted.pairs().iter().map(|pair| moments.pairs().iter().position(|own| own == pair)).collect();
+        let (count, stride) = (own.suns.count(), moments.count());
+        let at_level = |h: &f64| {
+            let interval = own.levels.partition_point(|level| level <= h).clamp(1, own.levels.len() - 1) - 1;
+            let stencil = Stencil::around(interval, &places, &own.walls);
+            let shares = stencil.weights(&places, measure(*h));
+            let mut rows = Vec::with_capacity(suns.len() * columns.len());
+            for sun in &suns {
+                for column in &columns {
+                    rows.push(column.map_or([0.0; L], |column| {
+                        between(
+                            &|i| {
+                                let mut sum = [0.0; L];
+                                for (k, share) in shares.iter().enumerate().take(stencil.count) {
+                                    let row = &self.moments[((stencil.first + k) * count + i) * stride + column];
+                                    for j in 0..L {
+                                        sum[j] += *share as f32 * row[j];
+                                    }
+                                }
+                                sum
+                            },
+                            sun,
+                        )
+                    }));
+                }
+            }
+            rows
+        };
+        let moments = grid.levels.par_iter().flat_map_iter(at_level).collect();
+        let ground = suns.iter().map(|sun| between(&|i| self.ground[i], sun)).collect();
+        Self { moments, ground }
+    }
+}
+
+/// Azimuths on half a circle of further orders, where there are molecules alone, and else. As many orders m are told apart by them: in
+/// an atmosphere that is nearly plane each m goes its own way, so those beyond are left as the first order has them.
+pub(super) const FEW_AZIMUTHS: usize = 4;
+pub(super) const AZIMUTHS: usize = 8;
+
 /// What a level needs to look around.
 pub(super) struct Around<'a, const L: usize> {
-    pub(super) lines: &'a [Line<L>],
+    pub(super) lines: &'a Lines<L>,
     pub(super) moments: &'a Moments,
     pub(super) suns: &'a Suns,
     /// Albedo over pi.
@@ -28,144 +89,190 @@ const MOST_COSINES: usize = super::harmonics::MOST_DEGREE + 1;
 
 impl<const L: usize> Around<'_, L> {
     /// The moments at one level (of a sun, of each (l, m)) of the light that `field` becomes, and, of use at the ground, the
-    /// irradiance from above; with so many azimuths on half a circle.
+    /// irradiance from above.
     #[inline(always)]
     pub(super) fn scatter<const AZIMUTHS: usize>(&self, field: &Field<L>) -> (Vec<[f32; L]>, Vec<[f32; L]>) {
         let suns = self.suns.count();
-        let cosines = azimuth_cosines::<AZIMUTHS>();
+        let turns: Vec<_> =
+            self.lines.lines.iter().map(|line| Turns::new::<AZIMUTHS>(line.zenith, self.suns)).collect();
+        // Of each line, sun and azimuth.
+        let places = LANES * self.suns.batches::<AZIMUTHS>();
+        let mut radiance = vec![[0.0; L]; self.lines.lines.len() * places];
+        let mut factors = Vec::new();
+        let (mut few, mut many) = (vec![[[0.0; L]; 3]; suns], vec![[[0.0; L]; AZIMUTHS]; suns]);
+        for node in &self.lines.nodes {
+            let radiance = &mut radiance[node.line * places..(node.line + 1) * places];
+            if node.harmonics.len() == RAYLEIGH {
+                self.contract(node, field, &mut factors, &mut few);
+                self.gather(&turns[node.line], node, &few, radiance);
+            } else {
+                self.contract(node, field, &mut factors, &mut many);
+                self.gather(&turns[node.line], node, &many, radiance);
+            }
+        }
         let mut sum = Gathered::new(self.moments.count(), suns);
-        let mut radiance = vec![[[0.0; L]; AZIMUTHS]; suns];
-        let (mut rows, mut factors) = (Vec::new(), Vec::new());
-        let degree = self.moments.degree() + 1;
-        for line in self.lines {
-            radiance.fill([[0.0; L]; AZIMUTHS]);
-            let turns = Turns::new(line.zenith, &cosines);
-            for (node, sources) in line.nodes.iter().zip(line.sources.chunks_exact(degree)) {
-                let orders = self.contract(node, sources, field, &mut factors, &mut rows);
-                self.gather(&turns, node, &rows, orders, &mut radiance);
-            }
+        for ((line, turns), radiance) in self.lines.lines.iter().zip(&turns).zip(radiance.chunks_exact_mut(places)) {
             if let Some(foot) = &line.foot {
-                let through: [f32; L] = std::array::from_fn(|j| foot.through[j] * self.reflected[j]);
-                for (sun, radiance) in self.suns.sines_cosines.iter().zip(&mut radiance) {
-                    let (_, there) = turns.seen_from(*sun, foot.frame);
-                    let between = self.suns.locate(&there);
-                    for (a, sum) in radiance.iter_mut().enumerate() {
-                        for (k, weights) in between.weights.iter().enumerate() {
-                            let row = &field.ground[between.first[a] as usize + k];
-                            for j in 0..L {
-                                sum[j] += weights[a] * through[j] * row[j];
-                            }
-                        }
-                    }
-                }
+                self.reflect(turns, foot, field, radiance);
             }
-            sum.add(line, self.moments, &radiance);
+            sum.add::<AZIMUTHS>(line, self.moments, radiance);
         }
         (sum.moments, sum.ground)
     }
 
     /// For each sun at the node's level the sources by cosines of m times the azimuth:
-    /// sum_l S_lm(zenith) b_l I_lm. Gives how many orders m there are.
+    /// sum_l S_lm(zenith) b_l I_lm.
     #[inline(always)]
-    fn contract(
+    fn contract<const ORDERS: usize>(
         &self,
-        node: &Node,
-        sources: &[[f32; L]],
+        node: &Node<L>,
         field: &Field<L>,
         factors: &mut Vec<[f32; L]>,
-        rows: &mut Vec<[f32; L]>,
-    ) -> usize {
+        rows: &mut [[[f32; L]; ORDERS]],
+    ) {
         let (count, all) = (node.harmonics.len(), self.moments.count());
-        let orders = if count == RAYLEIGH { 3 } else { self.moments.degree() + 1 };
-        let pairs = &self.moments.pairs()[..count];
         factors.clear();
-        for (&(l, _), harmonic) in pairs.iter().zip(&node.harmonics) {
-            let mut factor = sources[l];
-            for j in 0..L {
-                factor[j] *= harmonic;
-            }
-            factors.push(factor);
+        for (&(l, _), harmonic) in self.moments.pairs().iter().zip(&node.harmonics) {
+            factors.push(node.sources[l].map(|source| source * harmonic));
         }
-        rows.clear();
-        rows.resize(self.suns.count() * orders, [0.0; L]);
         let level = &field.moments[node.level * self.suns.count() * all..][..self.suns.count() * all];
-        for (here, row) in level.chunks_exact(all).zip(rows.chunks_exact_mut(orders)) {
-            for ((&(_, m), factor), moment) in pairs.iter().zip(factors.iter()).zip(here) {
-                let row = &mut row[m];
-                for j in 0..L {
-                    row[j] += factor[j] * moment[j];
+        rows.fill([[0.0; L]; ORDERS]);
+        // Two suns at a time: each factor is read once for both.
+        for (here, rows) in level.chunks(2 * all).zip(rows.chunks_mut(2)) {
+            let (one, other) = here.split_at(all);
+            for (m, run) in self.moments.runs(count) {
+                match rows {
+                    [row] => {
+                        for (factor, moment) in factors[run.clone()].iter().zip(&one[run]) {
+                            add_product(&mut row[m], factor, moment);
+                        }
+                    }
+                    [row, other_row] => {
+                        let (mut sum, mut other_sum) = (row[m], other_row[m]);
+                        for ((factor, a), b) in factors[run.clone()].iter().zip(&one[run.clone()]).zip(&other[run]) {
+                            add_product(&mut sum, factor, a);
+                            add_product(&mut other_sum, factor, b);
+                        }
+                        (row[m], other_row[m]) = (sum, other_sum);
+                    }
+                    _ => {}
                 }
             }
         }
-        orders
     }
 
-    /// Adds the sources of a node to the radiance of the line, for each sun and azimuth.
+    /// Adds the sources of a node to the radiance of its line, for each sun and azimuth.
     #[inline(always)]
-    fn gather<const AZIMUTHS: usize>(
+    fn gather<const ORDERS: usize>(
         &self,
-        turns: &Turns<AZIMUTHS>,
-        node: &Node,
-        rows: &[[f32; L]],
-        orders: usize,
-        radiance: &mut [[[f32; L]; AZIMUTHS]],
+        turns: &Turns,
+        node: &Node<L>,
+        rows: &[[[f32; L]; ORDERS]],
+        radiance: &mut [[f32; L]],
     ) {
         let node_sine = ((1.0 - node.zenith) * (1.0 + node.zenith)).max(0.0).sqrt();
-        let mut factors = [[1.0_f32; AZIMUTHS]; MOST_COSINES];
-        for (sun, radiance) in self.suns.sines_cosines.iter().zip(radiance) {
-            let (towards, there) = turns.seen_from(*sun, node.frame);
+        let batches = turns.batches.iter().zip(radiance.as_chunks_mut::<LANES>().0);
+        for (batch, radiance) in batches {
+            let there = batch.there(node.frame);
             let between = self.suns.locate(&there);
-            for a in 0..AZIMUTHS {
-                let across = node_sine * ((1.0 - there[a]) * (1.0 + there[a])).max(0.0).sqrt();
-                let along = towards[a] - node.zenith * there[a];
-                factors[1][a] = if across > 1e-6 { (along / across).clamp(-1.0, 1.0) } else { 1.0 };
+            // Cosines of m times the azimuth there.
+            let mut cosines = [[1.0_f32; LANES]; ORDERS];
+            for i in 0..LANES {
+                let across = node_sine * ((1.0 - there[i]) * (1.0 + there[i])).max(0.0).sqrt();
+                let along = batch.towards[i] - node.zenith * there[i];
+                cosines[1][i] = if across > 1e-6 { (along / across).clamp(-1.0, 1.0) } else { 1.0 };
             }
-            for m in 2..orders {
-                for a in 0..AZIMUTHS {
-                    factors[m][a] = 2.0 * factors[1][a] * factors[m - 1][a] - factors[m - 2][a];
+            for m in 2..ORDERS {
+                for i in 0..LANES {
+                    cosines[m][i] = 2.0 * cosines[1][i] * cosines[m - 1][i] - cosines[m - 2][i];
                 }
             }
-            for (a, sum) in radiance.iter_mut().enumerate() {
-                let first = between.first[a] as usize * orders;
-                let four = &rows[first..first + 4 * orders];
+            for (i, sum) in radiance.iter_mut().enumerate() {
+                let first = between.first[i] as usize;
+                let [a, b, c, d] = between.weights.map(|weights| weights[i]);
+                let [p, q, r, s] = [0, 1, 2, 3].map(|k| &rows[first + k]);
                 let mut total = *sum;
-                for (rows, weights) in four.chunks_exact(orders).zip(&between.weights) {
-                    for (row, factor) in rows.iter().zip(&factors) {
-                        let factor = weights[a] * factor[a];
-                        for j in 0..L {
-                            total[j] += factor * row[j];
-                        }
+                for m in 0..ORDERS {
+                    let cosine = cosines[m][i];
+                    for j in 0..L {
+                        total[j] += cosine * ((a * p[m][j] + b * q[m][j]) + (c * r[m][j] + d * s[m][j]));
                     }
                 }
                 *sum = total;
             }
         }
     }
-}
 
-/// A line turned about the vertical of its beginning.
-pub(super) struct Turns<const AZIMUTHS: usize> {
-    zenith: f32,
-    /// Sine of the zenith angle times the cosine of each azimuth.
-    level: [f32; AZIMUTHS],
-}
-
-impl<const AZIMUTHS: usize> Turns<AZIMUTHS> {
+    /// Adds the diffuse light that the ground reflects into a line, for each sun and azimuth.
     #[inline(always)]
-    pub(super) fn new(zenith: f64, cosines: &[f32; AZIMUTHS]) -> Self {
-        let sine = ((1.0 - zenith) * (1.0 + zenith)).max(0.0).sqrt() as f32;
-        Self { zenith: zenith as f32, level: cosines.map(|cosine| sine * cosine) }
-    }
-
-    /// For each azimuth the cosines of the angle between line and sun and of the sun's zenith angle at a place of the line.
-    #[inline(always)]
-    pub(super) fn seen_from(&self, (sin, cos): (f32, f32), frame: [f32; 2]) -> ([f32; AZIMUTHS], [f32; AZIMUTHS]) {
-        let (mut towards, mut there) = ([0.0; AZIMUTHS], [0.0; AZIMUTHS]);
-        for a in 0..AZIMUTHS {
-            towards[a] = cos * self.zenith + sin * self.level[a];
-            there[a] = frame[0] * cos + frame[1] * towards[a];
+    fn reflect(&self, turns: &Turns, foot: &Foot<L>, field: &Field<L>, radiance: &mut [[f32; L]]) {
+        let through: [f32; L] = std::array::from_fn(|j| foot.through[j] * self.reflected[j]);
+        for (batch, radiance) in turns.batches.iter().zip(radiance.as_chunks_mut::<LANES>().0) {
+            let between = self.suns.locate(&batch.there(foot.frame));
+            for (i, sum) in radiance.iter_mut().enumerate() {
+                for (k, weights) in between.weights.iter().enumerate() {
+                    let row = &field.ground[between.first[i] as usize + k];
+                    for j in 0..L {
+                        sum[j] += weights[i] * through[j] * row[j];
+                    }
+                }
+            }
         }
-        (towards, there)
+    }
+}
+
+/// Suns and azimuths that are worked on together: some azimuths of each of a few suns.
+pub(super) const LANES: usize = 16;
+
+/// A line turned about the vertical of its beginning, under all suns; their number is filled up with the last one.
+pub(super) struct Turns {
+    pub(super) batches: Vec<Batch>,
+}
+
+/// Some suns and azimuths.
+pub(super) struct Batch {
+    /// Cosine of the sun's zenith angle at the beginning, and of the angle between line and sun.
+    cosine: [f32; LANES],
+    pub(super) towards: [f32; LANES],
+}
+
+impl Suns {
+    /// How many batches all suns make with so many azimuths, a divisor of [`LANES`].
+    pub(super) fn batches<const AZIMUTHS: usize>(&self) -> usize {
+        (self.count() * AZIMUTHS).div_ceil(LANES)
+    }
+}
+
+impl Turns {
+    #[inline(always)]
+    pub(super) fn new<const AZIMUTHS: usize>(zenith: f64, suns: &Suns) -> Self {
+        let sine = ((1.0 - zenith) * (1.0 + zenith)).max(0.0).sqrt() as f32;
+        let level = azimuth_cosines::<AZIMUTHS>().map(|cosine| sine * cosine);
+        let zenith = zenith as f32;
+        let last = suns.count() - 1;
+        let batch = |i: usize| {
+            let place = |lane: usize| {
+                let (sin, cos) = suns.sines_cosines[((i * LANES + lane) / AZIMUTHS).min(last)];
+                (cos, cos * zenith + sin * level[lane % AZIMUTHS])
+            };
+            Batch {
+                cosine: std::array::from_fn(|lane| place(lane).0),
+                towards: std::array::from_fn(|lane| place(lane).1),
+            }
+        };
+        Self { batches: (0..suns.batches::<AZIMUTHS>()).map(batch).collect() }
+    }
+}
+
+impl Batch {
+    /// Cosines of the sun's zenith angle at a place of the line.
+    #[inline(always)]
+    pub(super) fn there(&self, frame: [f32; 2]) -> [f32; LANES] {
+        let mut there = [0.0; LANES];
+        for i in 0..LANES {
+            there[i] = frame[0] * self.cosine[i] + frame[1] * self.towards[i];
+        }
+        there
     }
 }
 
@@ -186,14 +293,9 @@ impl<const L: usize> Gathered<L> {
         Self { moments: vec![[0.0; L]; moments * suns], ground: vec![[0.0; L]; suns], harmonics: Vec::new() }
     }
 
-    /// Adds the radiance (of each sun and azimuth) that arrives along a line.
+    /// Adds the radiance (of each sun and so many azimuths) that arrives along a line.
     #[inline(always)]
-    pub(super) fn add<const AZIMUTHS: usize>(
-        &mut self,
-        line: &Line<L>,
-        moments: &Moments,
-        radiance: &[[[f32; L]; AZIMUTHS]],
-    ) {
+    pub(super) fn add<const AZIMUTHS: usize>(&mut self, line: &Line<L>, moments: &Moments, radiance: &[[f32; L]]) {
         moments.at(line.zenith, &mut self.harmonics);
         let cosines = azimuth_cosines::<AZIMUTHS>();
         // Twice for the other half of the circle.
@@ -202,32 +304,24 @@ impl<const L: usize> Gathered<L> {
         let orders = (moments.degree() + 1).min(AZIMUTHS);
         let count = moments.count();
         let mut turned = [[0.0_f32; L]; MOST_COSINES];
-        for (sun, radiance) in radiance.iter().enumerate() {
+        for (sun, radiance) in radiance.as_chunks::<AZIMUTHS>().0.iter().enumerate().take(self.ground.len()) {
             turned[..orders].fill([0.0; L]);
             for (radiance, cosine) in radiance.iter().zip(&cosines) {
                 let (mut before, mut factor) = (*cosine, 1.0_f32);
                 for row in &mut turned[..orders] {
-                    for j in 0..L {
-                        row[j] += factor * radiance[j];
-                    }
+                    add_scaled(row, factor, radiance);
                     (before, factor) = (factor, 2.0 * cosine * factor - before);
                 }
             }
             let here = &mut self.moments[sun * count..(sun + 1) * count];
-            for ((sum, &(_, m)), harmonic) in here.iter_mut().zip(moments.pairs()).zip(&self.harmonics) {
-                if m >= orders {
-                    continue;
-                }
-                let factor = weight * *harmonic as f32;
-                for j in 0..L {
-                    sum[j] += factor * turned[m][j];
+            for (m, run) in moments.runs(moments.count_below(orders)) {
+                let row = turned[m];
+                for i in run {
+                    add_scaled(&mut here[i], weight * self.harmonics[i] as f32, &row);
                 }
             }
             if line.zenith > 0.0 {
-                let factor = weight * line.zenith as f32;
-                for j in 0..L {
-                    self.ground[sun][j] += factor * turned[0][j];
-                }
+                add_scaled(&mut self.ground[sun], weight * line.zenith as f32, &turned[0]);
             }
         }
     }

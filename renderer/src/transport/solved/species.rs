@@ -4,10 +4,10 @@
 //! than the table keeps, the share f = chi_(degree + 1) is taken for light that goes straight on (the delta-M method,
 //! Wiscombe 1977): chi'_l = (chi_l - f) / (1 - f), and of the scattering cross-section 1 - f is left.
 
-use super::grid::gauss;
-use super::harmonics::legendre;
-use crate::atmosphere::{Component, Medium, MediumError};
-use crate::phase::Phase;
+use crate::atmosphere::{Component, GAUSS_4, Medium, MediumError};
+use crate::phase::{Phase, Tabulated};
+use crate::vectors::vectorised;
+use pulp::NullaryFnOnce;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// A component that scatters.
@@ -110,32 +110,59 @@ pub(super) fn moments<const L: usize>(phase: &Phase<L>, last: usize) -> Vec<[f64
             chi
         }
         Phase::HenyeyGreenstein { g } => (0..=last).map(|l| g.map(|g| g.powi(l as i32))).collect(),
-        Phase::Tabulated(table) => {
-            // Between two nodes the phase function is a line: the rule is exact for degrees up to 6, and the nodes lie far
-            // closer than a polynomial of these degrees bends.
-            let rule = gauss(4);
-            let mut chi = vec![[0.0; L]; last + 1];
-            for ends in table.cosines().windows(2) {
-                let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
-                for (x, weight) in &rule {
-                    let c = middle + half * x;
-                    let values = phase.values(c);
-                    for (chi, p) in chi.iter_mut().zip(legendre(last, c)) {
-                        for (chi, value) in chi.iter_mut().zip(values) {
-                            *chi += 2.0 * PI * weight * half * p * value;
-                        }
+        Phase::Tabulated(table) => vectorised(Tabulation { table, phase, last }),
+    }
+}
+
+/// The moments of a tabulated phase function, as work for vectors.
+struct Tabulation<'a, const L: usize> {
+    table: &'a Tabulated<L>,
+    phase: &'a Phase<L>,
+    last: usize,
+}
+
+impl<const L: usize> NullaryFnOnce for Tabulation<'_, L> {
+    type Output = Vec<[f64; L]>;
+
+    /// Between two nodes the phase function is a line: the rule is exact for degrees up to 6, and the nodes lie far closer than a
+    /// polynomial of these degrees bends.
+    #[inline(always)]
+    fn call(self) -> Vec<[f64; L]> {
+        // P_l = (2 - 1/l) c P_(l-1) - (1 - 1/l) P_(l-2).
+        let shares: Vec<f64> = (0..=self.last).map(|l| 1.0 / (l as f64).max(1.0)).collect();
+        let mut chi = vec![[0.0; L]; self.last + 1];
+        for ends in self.table.cosines().windows(2) {
+            let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
+            let cosines = GAUSS_4.map(|(x, _)| middle + half * x);
+            let mut values = [[0.0; L]; 4];
+            for k in 0..4 {
+                values[k] = self.phase.values(cosines[k]).map(|value| 2.0 * PI * GAUSS_4[k].1 * half * value);
+            }
+            let (mut before, mut legendre) = ([0.0; 4], [1.0; 4]);
+            for (l, (chi, share)) in chi.iter_mut().zip(&shares).enumerate() {
+                if l > 0 {
+                    for k in 0..4 {
+                        let next = (2.0 - share) * cosines[k] * legendre[k] - (1.0 - share) * before[k];
+                        (before[k], legendre[k]) = (legendre[k], next);
                     }
                 }
+                let mut sum = *chi;
+                for k in 0..4 {
+                    for j in 0..L {
+                        sum[j] += legendre[k] * values[k][j];
+                    }
+                }
+                *chi = sum;
             }
-            chi
         }
+        chi
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::harmonics::legendre;
     use super::*;
-    use crate::phase::Tabulated;
     use std::sync::Arc;
 
     #[test]

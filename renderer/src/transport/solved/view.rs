@@ -95,7 +95,7 @@ impl<const L: usize> Solved<L> {
         cuts.sort_by(f64::total_cmp);
         'line: for i in 0..places.len().saturating_sub(1) {
             let (mut a, end) = (places[i].s.max(begin), places[i + 1].s.min(end));
-            let stencil = Stencil::around(i, places.len());
+            let stencil = Stencil::around(i, &places, &self.grid.walls);
             let mut taker = Taker {
                 sight: &sight,
                 through: through.as_ref(),
