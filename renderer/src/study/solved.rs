@@ -84,10 +84,10 @@ type Vary = fn(Resolution, usize) -> Resolution;
 
 /// What is varied.
 const VARIED: [(&str, Vary); 6] = [
-    ("levels", |r, i| Resolution { levels: [10, 14, 22, 32][i], ..r }),
+    ("levels", |r, i| Resolution { levels: [8, 12, 16, 24][i], ..r }),
     ("suns", |r, i| Resolution { suns: [20, 28, 40, 56][i], ..r }),
-    ("zenith angles", |r, i| Resolution { zeniths: [[4, 2, 3], [5, 3, 4], [7, 4, 5], [10, 6, 8]][i], ..r }),
-    ("steps between levels", |r, i| Resolution { parts: [1, 3, 8, 16][i], ..r }),
+    ("zenith angles", |r, i| Resolution { zeniths: [[3, 2, 2], [4, 3, 3], [6, 3, 4], [9, 5, 7]][i], ..r }),
+    ("steps between levels", |r, i| Resolution { parts: [1, 3, 6, 12][i], ..r }),
     ("degree of moments", |r, i| Resolution { degree: [4, 8, 14, 20][i], ..r }),
     ("change by the last order", |r, i| Resolution { change: [3e-2, 5e-3, 5e-4, 5e-5][i], ..r }),
 ];
@@ -102,7 +102,7 @@ const SEEN: [(&str, f64); 3] = [("sun at 30 degrees", 60.0), ("sun at 0 degrees"
 /// [`RenderError`] if the data do not have what it takes.
 pub fn grids(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError> {
     let medium = medium::<WAVELENGTHS>(data, Some(Biome::DesertDust), &visible())?;
-    let best = Resolution { levels: 40, suns: 64, zeniths: [12, 7, 9], parts: 16, degree: 24, change: 2e-5 };
+    let best = Resolution { levels: 32, suns: 64, zeniths: [12, 7, 9], parts: 16, degree: 24, change: 2e-5 };
     let reference = Solved::new(&medium, SHAPE, ALBEDO, &best)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let mut rows = Vec::new();

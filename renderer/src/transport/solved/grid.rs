@@ -3,7 +3,7 @@
 use crate::atmosphere::Medium;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// How fine a solution is; where phase functions have peaks, with a quarter more altitudes and half as many more zenith angles.
+/// How fine a solution is; where phase functions have peaks, with four more altitudes and half as many more zenith angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resolution {
     /// Number of altitudes.
@@ -160,12 +160,15 @@ impl Grid {
         let mut bends = medium.bends();
         bends.retain(|bend| !levels.contains(bend));
         let jumps = medium.jumps();
-        let jumps_at = |h: &f64| {
+        let is_wall = |i: usize| {
             const NEAR_M: f64 = 1e-3;
+            let h = levels[i];
             let [below, above] = [-NEAR_M, NEAR_M].map(|off| medium.local_at(h + off).scattering);
-            jumps.contains(h) && below.iter().zip(&above).any(|(a, b)| (a - b).abs() > WALL * a.max(*b))
+            let room = 0.5 * (levels[(i + 1).min(levels.len() - 1)] - levels[i.saturating_sub(1)]);
+            let bends = |(a, b): (&f64, &f64)| (a - b).abs() > (WALL.0 * a.max(*b)).max(WALL.1 / room);
+            jumps.contains(&h) && below.iter().zip(&above).any(bends)
         };
-        let walls = levels.iter().map(jumps_at).collect();
+        let walls = (0..levels.len()).map(is_wall).collect();
         Self { bends, radius, walls, suns: Suns::new(resolution.suns, radius, medium.top_m()), levels }
     }
 
@@ -197,8 +200,8 @@ impl Grid {
     }
 }
 
-/// Share of the scattering coefficient by which it changes at a wall.
-const WALL: f64 = 0.3;
+/// By which share of itself the scattering coefficient changes at a wall, and by which optical depth of the way to the next level.
+const WALL: (f64, f64) = (0.3, 0.01);
 
 /// Altitudes at equal steps of a measure that goes half with a power of the altitude, half with the scatterers below;
 /// where the density of a scatterer jumps, there is a level.

@@ -144,14 +144,14 @@ impl Resolution {
     pub const RENDER: Self = Self { levels: 16, suns: 40, zeniths: [6, 3, 4], parts: 6, degree: 14, change: 5e-4 };
 
     /// What reference cases take: also the twilight limb seen from space.
-    pub const FINE: Self = Self { levels: 28, suns: 48, zeniths: [10, 6, 8], parts: 8, degree: 20, change: 2e-4 };
+    pub const FINE: Self = Self { levels: 36, suns: 48, zeniths: [10, 6, 8], parts: 8, degree: 20, change: 2e-4 };
 
     /// A coarser one, whose distance from [`Resolution::RENDER`] tells how far that is from the truth.
     pub const COARSE: Self = Self { levels: 12, suns: 30, zeniths: [4, 3, 3], parts: 4, degree: 14, change: 5e-4 };
 
     /// Where phase functions have peaks: higher moments want closer directions, layers more levels.
     fn peaked(self) -> Self {
-        Self { levels: self.levels + self.levels / 4, zeniths: self.zeniths.map(|n| n + n / 2), ..self }
+        Self { levels: self.levels + 4, zeniths: self.zeniths.map(|n| n + n / 2), ..self }
     }
 }
 
