@@ -303,6 +303,9 @@ pub(super) struct StudyArgs {
     /// CSV to write, or PNG [default: plots/airlight-WHAT.csv, or .png]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Where `polarisation` stores its measurements, which the program is built with (CSV)
+    #[arg(long, value_name = "FILE", default_value = "renderer/measured/polarisation.csv")]
+    pub measured: PathBuf,
     /// Folder with the tables
     #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
@@ -324,6 +327,10 @@ pub(super) enum StudyName {
     SolvedGrids,
     /// Skies from one solution, the sun from 60 to -12 degrees, with the time of each: a strip of fisheyes (PNG)
     Strip,
+    /// Where clear skies have no polarisation over the sun's elevation: the points of Arago, Babinet and Brewster
+    NeutralPoints,
+    /// What leaving polarisation out costs over the sun's elevation, in clear air and the nine biomes: scalar beside polarised radiance
+    Polarisation,
 }
 
 impl StudyName {
@@ -333,6 +340,8 @@ impl StudyName {
             Self::SolvedSuns => "solved-suns",
             Self::SolvedGrids => "solved-grids",
             Self::Strip => "strip",
+            Self::NeutralPoints => "neutral-points",
+            Self::Polarisation => "polarisation",
         }
     }
 }

@@ -5,6 +5,7 @@ use super::args::PictureArgs;
 use super::output::println;
 use super::progress::{amount, duration, percent, size};
 use crate::film::{DiscLayer, Estimate, Picture, exr, png, tone};
+use crate::render::left_out::{LeftOut, Off};
 use crate::render::{Head, Part, Rendering, Shard, Sky, State, Summary, Verdict, receipt};
 use crate::scene::Scene;
 use glam::DVec3;
@@ -100,6 +101,9 @@ impl Product<'_> {
         }
         if !args.quiet {
             describe(scene, sky, summary, rendering, &head.parts);
+            if !scene.is_polarised() {
+                describe_left_out(&LeftOut::of(scene, sky), scene.error.filter(|_| !sky.is_solved()));
+            }
             if let Some(verdict) = verdict {
                 describe_verdict(verdict, sky.sun_direction());
             }
@@ -239,6 +243,25 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, 
         percent(errors.median_luminance),
         percent(errors.median_spectral)
     );
+}
+
+/// What it costs that the picture has no polarisation, or in what the scene lies outside the measurements; of a traced picture
+/// also whether the error that was asked calls for it.
+fn describe_left_out(left_out: &Result<LeftOut, String>, asked: Option<f64>) {
+    let of = |Off { rms, worst, error }: Off| {
+        let [rms, worst, error] = [rms, worst, error].map(percent);
+        format!("off by {rms} (rms over the sky), at worst {worst} (+- {error})")
+    };
+    match left_out {
+        Ok(known @ LeftOut { luminance, radiance, nm }) => {
+            let luminance = luminance.map_or(String::new(), |off| format!("luminance {}\n            ", of(off)));
+            println!("unpolarised {luminance}radiance at {nm:.0} nm {}", of(*radiance));
+            if let Some(error) = asked.filter(|error| known.calls_for_polarisation(*error)) {
+                println!("            an error of {} is reached sooner with --polarisation", percent(error));
+            }
+        }
+        Err(outside) => println!("unpolarised what that costs was not measured for {outside}"),
+    }
 }
 
 /// What a certificate found, with the sun in that direction.

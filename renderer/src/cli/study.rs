@@ -10,39 +10,65 @@ use crate::render::RenderError;
 use crate::study::{self, Chart};
 
 /// Makes a chart from the data; hears of progress.
-type Make = fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError>;
+type MakeChart = fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError>;
+
+/// Makes whatever a study makes.
+type Make = Box<dyn Fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Made, RenderError> + Sync>;
 
 pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
-    let make: Option<Make> = match args.what {
-        StudyName::Columns => Some(study::columns::make),
-        StudyName::SolvedSuns => Some(study::solved::suns),
-        StudyName::SolvedGrids => Some(study::solved::grids),
-        StudyName::Strip => None,
+    let chart = |make: MakeChart| -> Make { Box::new(move |data, progress| make(data, progress).map(Made::from)) };
+    let make: Make = match args.what {
+        StudyName::Columns => chart(study::columns::make),
+        StudyName::SolvedSuns => chart(study::solved::suns),
+        StudyName::SolvedGrids => chart(study::solved::grids),
+        StudyName::NeutralPoints => chart(study::neutral_points::make),
+        StudyName::Polarisation => Box::new(|data, progress| {
+            let (chart, measured) = study::polarisation::make(data, progress)?;
+            Ok(Made { measured: Some(measured.csv().into_bytes()), ..Made::from(chart) })
+        }),
+        StudyName::Strip => Box::new(|data, progress| {
+            let strip = study::strip::make(data, progress)?;
+            Ok(Made { bytes: png::file(strip.size, &strip.pixels)?, rows: of_strip(&strip), measured: None })
+        }),
     };
-    let ending = if make.is_some() { "csv" } else { "png" };
+    let ending = if matches!(args.what, StudyName::Strip) { "png" } else { "csv" };
     let path = args.output.clone().unwrap_or_else(|| format!("plots/airlight-{}.{ending}", args.what.as_str()).into());
     tables::file::check_writable(&path).map_err(|e| super::unwritable(&path, &e))?;
+    if matches!(args.what, StudyName::Polarisation) {
+        tables::file::check_writable(&args.measured).map_err(|e| super::unwritable(&args.measured, &e))?;
+    }
     let data = Data::load(&args.data).map_err(Failure::error)?;
     let line = Line::new(args.quiet);
     let progress = |share: f64| line.show(share, |_| args.what.as_str().to_owned());
     let pool = super::pool(args.threads)?;
-    let (bytes, rows) = pool
-        .install(|| match make {
-            Some(make) => make(&data, &progress).map(|chart| (chart.csv().into_bytes(), of_chart(&chart))),
-            None => study::strip::make(&data, &progress).and_then(|strip| {
-                let bytes = png::file(strip.size, &strip.pixels)?;
-                Ok((bytes, of_strip(&strip)))
-            }),
-        })
-        .map_err(Failure::error)?;
+    let made = pool.install(|| make(&data, &progress)).map_err(Failure::error)?;
     line.clear();
-    tables::file::replace(&path, &bytes).map_err(|e| super::unwritable(&path, &e))?;
+    tables::file::replace(&path, &made.bytes).map_err(|e| super::unwritable(&path, &e))?;
+    if let Some(measured) = &made.measured {
+        tables::file::replace(&args.measured, measured).map_err(|e| super::unwritable(&args.measured, &e))?;
+    }
     if !args.quiet {
-        println!("{}", rows.join("\n"));
+        println!("{}", made.rows.join("\n"));
         println!("time        {} on {} threads", duration(line.elapsed().as_secs_f64()), pool.current_num_threads());
         println!("written     {}", path.display());
+        if made.measured.is_some() {
+            println!("            {} (build again to carry it)", args.measured.display());
+        }
     }
     Ok(Outcome::Done)
+}
+
+/// What a study has made: its file, what it says, and measurements to store.
+struct Made {
+    bytes: Vec<u8>,
+    rows: Vec<String>,
+    measured: Option<Vec<u8>>,
+}
+
+impl From<Chart> for Made {
+    fn from(chart: Chart) -> Self {
+        Self { bytes: chart.csv().into_bytes(), rows: of_chart(&chart), measured: None }
+    }
 }
 
 /// The points, under the names of their panels.

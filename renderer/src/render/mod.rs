@@ -8,6 +8,7 @@ mod certify;
 mod disc;
 #[cfg(test)]
 mod honesty;
+pub mod left_out;
 mod merge;
 pub mod receipt;
 mod sample;

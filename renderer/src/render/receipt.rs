@@ -1,5 +1,6 @@
 //! What a picture says about how it was made.
 
+use super::left_out::LeftOut;
 use super::{End, Part, Rendering, Sky, Summary, Verdict};
 use crate::film::exr::Attribute;
 use crate::scene::Scene;
@@ -33,7 +34,8 @@ pub fn tables(sky: &Sky) -> String {
 
 /// The attributes of a picture's EXR file, names beginning with `airlight.`: program and version, the scene as JSON
 /// (`airlight render` reads it), the seeds and shards whose samples it has, one a line, samples, errors, ozone, illuminances, exposure of the PNG, and
-/// each table with its checksum; with a certificate, the rms error of solved tables and what it is below with 95 % confidence. No clock, machine or folder.
+/// each table with its checksum; with a certificate, the rms error of solved tables and what it is below with 95 % confidence; without
+/// polarisation, how far that puts luminance and radiance off ([`LeftOut`]), or why it is not known. No clock, machine or folder.
 #[must_use]
 pub fn receipt(
     scene: &Scene,
@@ -74,6 +76,20 @@ pub fn receipt(
     if let Some(verdict) = verdict {
         attributes.push(("airlight.certified_rms", Attribute::Number(verdict.rms)));
         attributes.push(("airlight.certified_rms_most", Attribute::Number(verdict.most)));
+    }
+    if !scene.is_polarised() {
+        match LeftOut::of(scene, sky) {
+            Ok(LeftOut { luminance, radiance, nm }) => {
+                if let Some(off) = luminance {
+                    attributes.push(("airlight.unpolarised_luminance_rms", Attribute::Number(off.rms)));
+                    attributes.push(("airlight.unpolarised_luminance_worst", Attribute::Number(off.worst)));
+                }
+                attributes.push(("airlight.unpolarised_radiance_rms", Attribute::Number(radiance.rms)));
+                attributes.push(("airlight.unpolarised_radiance_worst", Attribute::Number(radiance.worst)));
+                attributes.push(("airlight.unpolarised_radiance_nm", Attribute::Number(nm)));
+            }
+            Err(outside) => attributes.push(("airlight.unpolarised_unknown_for", text(outside))),
+        }
     }
     if let Some(haze) = haze {
         attributes.push(("airlight.aerosol_optical_depth_550nm", Attribute::Number(haze.optical_depth())));

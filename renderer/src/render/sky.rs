@@ -26,6 +26,7 @@ pub struct Sky {
     place: Place,
     colour: Colour,
     irradiance_w_m2_nm: Vec<f64>,
+    albedo: Vec<f64>,
     air: Air,
     any_place: bool,
     sun_direction: DVec3,
@@ -123,6 +124,7 @@ impl Sky {
             colour: Colour::new(&data.sun, &data.observer, wavelengths)?,
             irradiance_w_m2_nm: irradiance.collect::<Result<_, _>>()?,
             any_place: data.ozone_profiles.is_single() && scene.ozone_source == OzoneSource::McPetersLabow,
+            albedo,
             air,
             sun_direction,
             identities,
@@ -261,6 +263,12 @@ impl Sky {
     #[must_use]
     pub fn irradiance_w_m2_nm(&self) -> &[f64] {
         &self.irradiance_w_m2_nm
+    }
+
+    /// Albedo of the ground at each wavelength.
+    #[must_use]
+    pub fn albedo(&self) -> &[f64] {
+        &self.albedo
     }
 
     /// Number of wavelengths.

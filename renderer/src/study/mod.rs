@@ -1,6 +1,8 @@
 //! Error against size and cost, as tables for charts: `airlight study NAME` writes one, `airlight-tools chart` draws it.
 
 pub mod columns;
+pub mod neutral_points;
+pub mod polarisation;
 pub mod solved;
 pub mod strip;
 

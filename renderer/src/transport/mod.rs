@@ -25,7 +25,8 @@ use crate::light::SunDisc;
 use crate::polarisation::{Frame, Stokes};
 use crate::sampling::Sampler;
 use glam::DVec3;
-use radiation::{Polarised, Radiation, Scalar};
+pub use radiation::Pair;
+use radiation::{Both, Polarised, Radiation, Scalar};
 pub use solved::{Certificate, Certified, FINER, Fan, Panorama, Resolution, SolveError, Solved, Tables};
 
 use serde::{Deserialize, Serialize};
@@ -112,6 +113,20 @@ pub fn stokes<const L: usize>(
     sampler: &mut Sampler,
 ) -> [Stokes; L] {
     trace::<Polarised, L>(estimator, problem, from, (direction, frame), sampler)
+}
+
+/// One unbiased estimate of the same by scalar transfer and of its Stokes parameters in `frame`, along one path: of the difference
+/// that polarisation makes the noise is far less than that of either.
+#[must_use]
+pub fn both<const L: usize>(
+    estimator: Estimator,
+    problem: &Problem<'_, L>,
+    from: Place,
+    direction: DVec3,
+    frame: Frame,
+    sampler: &mut Sampler,
+) -> [Pair; L] {
+    trace::<Both, L>(estimator, problem, from, (direction, frame), sampler)
 }
 
 fn trace<R: Radiation, const L: usize>(

@@ -183,3 +183,104 @@ impl Radiation for Polarised {
         contribution.once_scattered(turn, scattered, light)
     }
 }
+
+/// Radiance alone and Stokes parameters along the same paths: where the two are alike their noise is too, so that their
+/// difference is known better than either.
+pub(super) struct Both;
+
+/// What is seen of light in scalar and in polarised transfer.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Pair {
+    /// Radiance by scalar transfer.
+    pub scalar: f64,
+    /// Its Stokes parameters by polarised transfer.
+    pub stokes: Stokes,
+}
+
+impl AddAssign for Pair {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        self.scalar += other.scalar;
+        self.stokes += other.stokes;
+    }
+}
+
+/// Contributions in scalar and in polarised transfer.
+#[derive(Clone, Copy)]
+pub(super) struct Contributions(f64, Analyser);
+
+impl Mul<f64> for Contributions {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0 * factor, self.1 * factor)
+    }
+}
+
+impl Radiation for Both {
+    type Seen = Pair;
+    type Contribution = Contributions;
+    type Frame = Frame;
+    type Turn = Turn;
+    type Matrix = Scattering;
+    type Natural = Natural;
+
+    const OBSERVER: Contributions = Contributions(Scalar::OBSERVER, Polarised::OBSERVER);
+
+    #[inline(always)]
+    fn matrices<const L: usize>(phase: &Phase<L>, cosine: f64) -> [Scattering; L] {
+        Polarised::matrices(phase, cosine)
+    }
+
+    #[inline(always)]
+    fn natural<const L: usize>(phase: &Phase<L>, cosine: f64) -> [Natural; L] {
+        Polarised::natural(phase, cosine)
+    }
+
+    #[inline(always)]
+    fn plane(frame: Frame, direction: DVec3, before: DVec3) -> (Turn, Frame) {
+        Polarised::plane(frame, direction, before)
+    }
+
+    /// The larger of the two: no path ends that either would have gone on with.
+    #[inline(always)]
+    fn intensity(Contributions(scalar, analyser): &Contributions) -> f64 {
+        scalar.max(analyser.intensity())
+    }
+
+    #[inline(always)]
+    fn scattered(
+        Contributions(scalar, analyser): &Contributions,
+        turn: Turn,
+        matrix: &Scattering,
+        density: f64,
+    ) -> Contributions {
+        Contributions(
+            Scalar::scattered(scalar, (), &matrix.a1, density),
+            Polarised::scattered(analyser, turn, matrix, density),
+        )
+    }
+
+    #[inline(always)]
+    fn reflected(Contributions(scalar, analyser): &Contributions, albedo: f64) -> Contributions {
+        Contributions(Scalar::reflected(scalar, albedo), Polarised::reflected(analyser, albedo))
+    }
+
+    #[inline(always)]
+    fn see(Contributions(scalar, analyser): &Contributions, light: f64) -> Pair {
+        Pair { scalar: Scalar::see(scalar, light), stokes: Polarised::see(analyser, light) }
+    }
+
+    #[inline(always)]
+    fn see_scattered(
+        Contributions(scalar, analyser): &Contributions,
+        turn: Turn,
+        scattered: Natural,
+        light: f64,
+    ) -> Pair {
+        Pair {
+            scalar: Scalar::see_scattered(scalar, (), scattered.a1, light),
+            stokes: Polarised::see_scattered(analyser, turn, scattered, light),
+        }
+    }
+}

@@ -42,6 +42,28 @@ fn level(direction: DVec3) -> Frame {
     Frame::new(direction, DVec3::Z.cross(direction).normalize())
 }
 
+/// Sums of estimates and of their squares.
+#[derive(Debug, Default)]
+struct Moments {
+    count: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Moments {
+    fn add(&mut self, x: f64) {
+        (self.count, self.sum, self.squares) = (self.count + 1.0, self.sum + x, self.squares + x * x);
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / self.count
+    }
+
+    fn error(&self) -> f64 {
+        ((self.squares / self.count - self.mean().powi(2)) / (self.count - 1.0)).sqrt()
+    }
+}
+
 /// Mean and standard error of I, Q and U of `n` estimates at each wavelength, in the frame of [`level`].
 fn means<const L: usize>(
     method: Estimator,
@@ -153,6 +175,43 @@ fn what_depolarises_is_scalar() {
             }
         }
     }
+}
+
+#[test]
+fn scalar_and_polarised_transfer_along_one_path_are_those_of_paths_of_their_own() {
+    // Light of two orders at most meets no roulette that differs: every path alike, but for rounding.
+    let medium = hazy();
+    let (disc, columns, view) = (SunDisc::beam(towards(80.0, 0.0)), columns(&medium, EARTH), towards(60.0, 30.0));
+    let problem = sunlit((EARTH, &medium), &columns, 0.4, &disc);
+    let short = Problem { max_orders: Some(2), ..problem };
+    for method in METHODS {
+        for sample in 0..200 {
+            let sampler = Sampler::new(11, 0, sample);
+            let scalar = radiance(method, &short, Place::above(10.0), view, &mut sampler.clone());
+            let stokes = stokes(method, &short, Place::above(10.0), view, level(view), &mut sampler.clone());
+            let pairs = both(method, &short, Place::above(10.0), view, level(view), &mut sampler.clone());
+            for (pair, (scalar, stokes)) in pairs.into_iter().zip(scalar.into_iter().zip(stokes)) {
+                assert!((pair.scalar - scalar).abs() <= 1e-12 * scalar, "{method:?}: {pair:?} for {scalar}");
+                assert!((pair.stokes.i - stokes.i).abs() <= 1e-12 * stokes.i, "{method:?}: {pair:?} for {stokes:?}");
+                assert!((pair.stokes.q - stokes.q).abs() <= 1e-12 * stokes.i, "{method:?}: {pair:?} for {stokes:?}");
+            }
+        }
+    }
+    // All orders: the means of either agree, and the difference has less noise than the radiance.
+    let problem = sunlit((EARTH, &medium), &columns, 0.4, &disc);
+    let n = 20_000;
+    let (mut scalar, mut own, mut difference) = (Moments::default(), Moments::default(), Moments::default());
+    for sample in 0..n {
+        let sampler = Sampler::new(12, 0, sample);
+        let [pair, _] = both(Estimator::Paths, &problem, Place::above(10.0), view, level(view), &mut sampler.clone());
+        let [alone, _] = radiance(Estimator::Paths, &problem, Place::above(10.0), view, &mut sampler.clone());
+        scalar.add(pair.scalar);
+        own.add(alone);
+        difference.add(pair.scalar - pair.stokes.i);
+    }
+    let error = scalar.error().hypot(own.error());
+    assert!((scalar.mean() - own.mean()).abs() < 5.0 * error, "{scalar:?}, {own:?}");
+    assert!(difference.error() < 0.5 * scalar.error(), "{difference:?}, {scalar:?}");
 }
 
 #[test]
