@@ -322,6 +322,9 @@ pub(super) struct StudyArgs {
     /// What to study
     #[arg(value_name = "WHAT")]
     pub what: StudyName,
+    /// Of the ladder 18 scenes and the main settings alone, in some five minutes
+    #[arg(long)]
+    pub quick: bool,
     /// CSV to write, or PNG [default: plots/airlight-WHAT.csv, or .png]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -344,6 +347,8 @@ pub(super) enum StudyName {
     SolvedSuns,
     /// Solved tables: error against the time to solve, for grids, moments and orders
     SolvedGrids,
+    /// Every method: error against cost over 60 scenes, from day to twilight, from the ground to space (an hour on two cores)
+    Ladder,
     /// Skies from one solution, the sun from 60 to -12 degrees, with the time of each: a strip of fisheyes (PNG)
     Strip,
 }
@@ -352,6 +357,7 @@ impl StudyName {
     pub(super) fn as_str(self) -> &'static str {
         match self {
             Self::Columns => "columns",
+            Self::Ladder => "ladder",
             Self::SolvedSuns => "solved-suns",
             Self::SolvedGrids => "solved-grids",
             Self::Strip => "strip",

@@ -221,7 +221,8 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, 
     println!("picture     {width} x {height}, {channels}, {samples} samples per pixel{blocks}{seed}");
     if sky.is_noiseless() && scene.method != Method::Solved {
         let rung = Rung::of(scene.method);
-        println!("method      {}: {}; leaves out {}", rung.name, rung.source, rung.leaves_out);
+        println!("method      {}: {}", rung.name, rung.source);
+        println!("            leaves out {}", rung.leaves_out);
     }
     for part in parts {
         println!("            {part}");

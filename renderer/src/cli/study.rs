@@ -7,6 +7,7 @@ use super::{Failure, Outcome};
 use crate::data::Data;
 use crate::film::png;
 use crate::render::RenderError;
+use crate::study::ladder::Size;
 use crate::study::{self, Chart};
 
 /// Makes a chart from the data; hears of progress.
@@ -17,9 +18,12 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
         StudyName::Columns => Some(study::columns::make),
         StudyName::SolvedSuns => Some(study::solved::suns),
         StudyName::SolvedGrids => Some(study::solved::grids),
-        StudyName::Strip => None,
+        StudyName::Ladder | StudyName::Strip => None,
     };
-    let ending = if make.is_some() { "csv" } else { "png" };
+    if args.quick && !matches!(args.what, StudyName::Ladder) {
+        return Err(Failure::usage("--quick belongs to the ladder: leave it out"));
+    }
+    let ending = if matches!(args.what, StudyName::Strip) { "png" } else { "csv" };
     let path = args.output.clone().unwrap_or_else(|| format!("plots/airlight-{}.{ending}", args.what.as_str()).into());
     tables::file::check_writable(&path).map_err(|e| super::unwritable(&path, &e))?;
     let data = Data::load(&args.data).map_err(Failure::error)?;
@@ -29,6 +33,11 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
     let (bytes, rows) = pool
         .install(|| match make {
             Some(make) => make(&data, &progress).map(|chart| (chart.csv().into_bytes(), of_chart(&chart))),
+            None if matches!(args.what, StudyName::Ladder) => {
+                let size = if args.quick { Size::Quick } else { Size::Full };
+                let ladder = study::ladder::make(&data, size, pool.current_num_threads(), &progress)?;
+                Ok((ladder.csv().into_bytes(), ladder.summary()))
+            }
             None => study::strip::make(&data, &progress).and_then(|strip| {
                 let bytes = png::file(strip.size, &strip.pixels)?;
                 Ok((bytes, of_strip(&strip)))

@@ -34,6 +34,7 @@ pub struct Sky {
     identities: Vec<Identity>,
     shows: Shows,
     fitted: Option<Fitted>,
+    turbidity: f64,
 }
 
 /// A fitted sky in the place of Airlight's; the sun behind the air is Airlight's own.
@@ -144,6 +145,7 @@ impl Sky {
                 None => Shows::Radiance,
             },
             fitted,
+            turbidity,
         })
     }
 
@@ -157,6 +159,7 @@ impl Sky {
         if self.fitted.is_some() {
             return Err(SceneError::Refused("a fitted sky belongs to one sun".into()).into());
         }
+        Rung::of(scene.method).covers(&conditions(scene, self.turbidity))?;
         let wanted = looked_at(scene);
         (self.place, self.sun_direction) = (Place::above(scene.altitude_km * KM), scene.sun_direction());
         for (_, carrier) in &mut self.carriers {
@@ -325,6 +328,12 @@ impl Sky {
     #[must_use]
     pub fn any_place(&self) -> bool {
         self.any_place
+    }
+
+    /// Vertical optical depth of molecules and aerosol at 550 nm over that of molecules.
+    #[must_use]
+    pub fn turbidity(&self) -> f64 {
+        self.turbidity
     }
 
     /// The tables that were used.
