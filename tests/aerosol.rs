@@ -3,7 +3,7 @@
 use airlight_tests::data;
 use glam::DVec3;
 use renderer::atmosphere::{
-    Air, AirError, AirSettings, Amount, Haze, HazePhase, HazeSettings, KOSCHMIEDER, OzoneSource,
+    Air, AirError, AirSettings, Amount, Depolarisation, Haze, HazePhase, HazeSettings, KOSCHMIEDER, OzoneSource,
 };
 use renderer::geometry::{Place, Shape};
 use tables::units::EARTH_RADIUS_M;
@@ -18,6 +18,7 @@ fn air() -> Air {
         ozone_source: OzoneSource::McPetersLabow,
         ozone_du: Some(0.0),
         top_m: 120_000.0,
+        depolarisation: Depolarisation::Measured,
     };
     Air::new(&data(), &settings).expect("air")
 }

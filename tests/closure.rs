@@ -2,7 +2,7 @@
 
 use airlight_tests::data;
 use glam::DVec3;
-use renderer::atmosphere::{Air, AirSettings, OzoneSource};
+use renderer::atmosphere::{Air, AirSettings, Depolarisation, OzoneSource};
 use renderer::geometry::{Place, Shape};
 use tables::units::{DOBSON_UNIT_M2, EARTH_RADIUS_M};
 
@@ -15,6 +15,7 @@ fn settings() -> AirSettings {
         ozone_source: OzoneSource::McPetersLabow,
         ozone_du: None,
         top_m: 120_000.0,
+        depolarisation: Depolarisation::Measured,
     }
 }
 

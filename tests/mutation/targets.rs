@@ -262,9 +262,9 @@ fn picture_scene(bytes: &[u8]) -> Result<(), String> {
 /// A state as `airlight render --checkpoint` writes it, of a small picture.
 fn run_state() -> Vec<u8> {
     let scene = Scene { width: Some(3), height: Some(2), biome: Some(views::Biome::Urban), ..Scene::default() };
-    let mut film = Film::new(3, 2, vec![1.5; scene.wavelengths_nm.nm().len()], scene.polarisation);
+    let mut film = Film::new(3, 2, vec![1.5; scene.channels()], scene.polarisation);
     for row in &mut film.rows_mut() {
-        row.add(1, &vec![0.25; scene.wavelengths_nm.nm().len()], [1.0, 2.0, 3.0]);
+        row.add(1, &vec![0.25; scene.channels()], [1.0, 2.0, 3.0]);
     }
     let parts = (1..=2).filter_map(|index| Shard::new(index, 2).ok()).map(|shard| Part { seed: 1, shard }).collect();
     Head { program: "airlight".into(), scene, tables: "sun.table 00c0ffee Sun".into(), parts }.encode(&film)

@@ -16,6 +16,7 @@ pub mod export;
 #[cfg(feature = "study")]
 pub mod frame;
 pub mod inspect;
+pub mod ladder;
 pub mod lint;
 pub mod mie;
 pub mod mie_cases;

@@ -18,6 +18,17 @@ pub enum OzoneSource {
     Arosa,
 }
 
+/// How molecules scatter.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Depolarisation {
+    /// With the depolarisation of air (King factor of Bucholtz 1995)
+    #[default]
+    Measured,
+    /// As spheres do: the phase function 3/(16 pi) (1 + cos^2), and cross-sections over the King factor
+    None,
+}
+
 /// What chooses the molecular atmosphere.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AirSettings {
@@ -32,6 +43,8 @@ pub struct AirSettings {
     pub ozone_du: Option<f64>,
     /// Top of the atmosphere in m.
     pub top_m: f64,
+    /// How molecules scatter.
+    pub depolarisation: Depolarisation,
 }
 
 /// Why no atmosphere can be made.
@@ -72,6 +85,7 @@ pub struct Air {
     ozone: [Curve; 3],
     ozone_du: f64,
     top_m: f64,
+    depolarisation: Depolarisation,
     rayleigh: Rayleigh,
     cross_section: OzoneCrossSection,
     haze: Option<Haze>,
@@ -104,6 +118,7 @@ impl Air {
             ozone,
             ozone_du,
             top_m: settings.top_m,
+            depolarisation: settings.depolarisation,
             rayleigh: data.rayleigh.clone(),
             cross_section: data.ozone_cross_section.clone(),
             haze: None,
@@ -130,6 +145,22 @@ impl Air {
         Ok(self.density.at(0.0)? * self.rayleigh.cross_section_m2.at(REFERENCE_WAVELENGTH_NM)?)
     }
 
+    /// Vertical optical depth of the molecules above the ground at 550 nm, whatever the top of the scene.
+    ///
+    /// # Errors
+    /// [`AirError::Table`] if the tables do not reach there.
+    pub fn molecular_depth(&self) -> Result<f64, AirError> {
+        let nodes = &self.density.axis().nodes;
+        let mut column = 0.0;
+        // Densities are exponential between two nodes.
+        for ends in nodes.windows(2) {
+            let (a, b) = (self.density.at(ends[0])?, self.density.at(ends[1])?);
+            let mean = if (a / b - 1.0).abs() < 1e-9 { a } else { (a - b) / (a / b).ln() };
+            column += mean * (ends[1] - ends[0]);
+        }
+        Ok(column * self.rayleigh.cross_section_m2.at(REFERENCE_WAVELENGTH_NM)?)
+    }
+
     /// Vertical ozone column in Dobson units.
     #[must_use]
     pub fn ozone_du(&self) -> f64 {
@@ -154,13 +185,16 @@ impl Air {
             }
             Ok(values)
         };
-        let phase = Phase::Rayleigh { gamma: lanes(&self.rayleigh.gamma)? };
-        let molecules = Component {
-            density: self.density.clone(),
-            scattering: lanes(&self.rayleigh.cross_section_m2)?,
-            absorption: [0.0; L],
-            phase: phase.clone(),
-        };
+        let (mut gamma, mut scattering) = (lanes(&self.rayleigh.gamma)?, lanes(&self.rayleigh.cross_section_m2)?);
+        if self.depolarisation == Depolarisation::None {
+            for j in 0..L {
+                scattering[j] /= king_factor(gamma[j]);
+            }
+            gamma = [0.0; L];
+        }
+        let phase = Phase::Rayleigh { gamma };
+        let molecules =
+            Component { density: self.density.clone(), scattering, absorption: [0.0; L], phase: phase.clone() };
         let mut components = vec![molecules];
         for (density, sigma) in self.ozone.iter().zip(&self.cross_section.coefficients) {
             components.push(Component {
@@ -175,6 +209,13 @@ impl Air {
         }
         Ok(Medium::new(components, self.top_m)?)
     }
+}
+
+/// The King factor F_k = (6 + 3 rho) / (6 - 7 rho) by which depolarisation raises the cross-section, from gamma = rho / (2 - rho)
+/// (Bucholtz 1995, equations 5 and 12).
+fn king_factor(gamma: f64) -> f64 {
+    let rho = 2.0 * gamma / (1.0 + gamma);
+    (6.0 + 3.0 * rho) / (6.0 - 7.0 * rho)
 }
 
 /// The temperatures in K at which ozone's cross-section was measured (Serdyuchenko et al. 2014). Colder air (85

@@ -1,10 +1,10 @@
 //! Flags, and how they change a scene.
 
-use crate::atmosphere::{HazePhase, OzoneSource};
+use crate::atmosphere::{Depolarisation, HazePhase, OzoneSource};
 use crate::cases::Tier;
 use crate::render::Shard;
-use crate::scene::{Albedo, CameraKind, Scene, SceneError, word};
-use crate::spectrum::Wavelengths;
+use crate::scene::{Albedo, CameraKind, Scene, SceneError, SunShape, word};
+use crate::spectrum::{Scheme, Wavelengths};
 use crate::sweep::PATHS;
 use crate::transport::{Estimator, Method};
 use clap::{Args, ValueEnum};
@@ -37,9 +37,18 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "scene", help_heading = "Files")]
     pub resume: Option<PathBuf>,
 
-    /// Solved tables (without noise), paths on column tables, or the brute-force judge [default: solved]
+    /// How radiance is found [default: solved]
     #[arg(long, value_name = "METHOD", help_heading = "Sampling")]
-    pub method: Option<MethodName>,
+    pub method: Option<RenderMethod>,
+    /// Points on each line of sight of --method single, isotropic [default: 32] and oneil [default: 5], 2 to 4096
+    #[arg(long, value_name = "N", help_heading = "Sampling")]
+    pub steps: Option<u32>,
+    /// Type of the CIE's standard sky of --method cie, 1 to 15 [default: 12, clear]
+    #[arg(long, value_name = "1..15", help_heading = "Sampling")]
+    pub sky_type: Option<u8>,
+    /// The most scatterings and reflections of a path of --method paths or judge, 1 to 1000 [default: all]
+    #[arg(long, value_name = "N", help_heading = "Sampling")]
+    pub orders: Option<u32>,
     /// Samples per pixel, 1 to 10^9, rounded up to whole blocks; with --error or --time the most of them [default: 64; 1 of solved tables]
     #[arg(long, value_name = "N", help_heading = "Sampling")]
     pub spp: Option<u32>,
@@ -76,6 +85,9 @@ pub(super) struct RenderArgs {
     /// increasing (450,550,650; a single one as 550.0) [default: 16]
     #[arg(long, value_name = "N|LIST", help_heading = "Sampling")]
     pub wavelengths: Option<Wavelengths>,
+    /// How wavelengths become colour, with any method that has a spectrum; rgb and four bring their own wavelengths [default: spectral]
+    #[arg(long, value_name = "SCHEME", help_heading = "Sampling")]
+    pub colour: Option<Scheme>,
     /// Print one sample of this pixel (from the upper left, 0,0) instead of a picture
     #[arg(long, value_name = "X,Y", value_parser = pixel, help_heading = "Sampling")]
     pub pixel: Option<(u32, u32)>,
@@ -125,6 +137,16 @@ pub(super) struct RenderArgs {
     /// Whether the disc itself is drawn; it gives light either way [default: on]
     #[arg(long, help_heading = "Sun, air and ground")]
     pub sun_disc: Option<Switch>,
+    /// Form of the sun as a light [default: disc]
+    #[arg(long, value_name = "FORM", help_heading = "Sun, air and ground")]
+    pub sun_shape: Option<SunShape>,
+    /// Whether the planet is a plane, the layers without end, for --method paths, judge, single and isotropic; the sun then stands above
+    /// the horizon [default: off; on without a word]
+    #[arg(long, num_args = 0..=1, default_missing_value = "on", require_equals = true, help_heading = "Sun, air and ground")]
+    pub flat: Option<Switch>,
+    /// How molecules scatter [default: measured]
+    #[arg(long, value_name = "HOW", help_heading = "Sun, air and ground")]
+    pub depolarisation: Option<Depolarisation>,
     /// Top of the atmosphere in km, 1 to 120 [default: 120]
     #[arg(long, value_name = "KM", help_heading = "Sun, air and ground")]
     pub top: Option<f64>,
@@ -300,6 +322,9 @@ pub(super) struct StudyArgs {
     /// What to study
     #[arg(value_name = "WHAT")]
     pub what: StudyName,
+    /// Of the ladder 18 scenes and the main settings alone, in some five minutes
+    #[arg(long)]
+    pub quick: bool,
     /// CSV to write, or PNG [default: plots/airlight-WHAT.csv, or .png]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -325,6 +350,8 @@ pub(super) enum StudyName {
     SolvedSuns,
     /// Solved tables: error against the time to solve, for grids, moments and orders
     SolvedGrids,
+    /// Every method: error against cost over 60 scenes, from day to twilight, from the ground to space (an hour on two cores)
+    Ladder,
     /// Skies from one solution, the sun from 60 to -12 degrees, with the time of each: a strip of fisheyes (PNG)
     Strip,
     /// Where clear skies have no polarisation over the sun's elevation: the points of Arago, Babinet and Brewster
@@ -337,6 +364,7 @@ impl StudyName {
     pub(super) fn as_str(self) -> &'static str {
         match self {
             Self::Columns => "columns",
+            Self::Ladder => "ladder",
             Self::SolvedSuns => "solved-suns",
             Self::SolvedGrids => "solved-grids",
             Self::Strip => "strip",
@@ -374,6 +402,47 @@ pub(super) enum MethodName {
     Solved,
     Paths,
     Judge,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum RenderMethod {
+    /// Solved tables: without noise, and they state their error
+    Solved,
+    /// Paths on column tables: unbiased
+    Paths,
+    /// The brute-force judge
+    Judge,
+    /// An isotropic closure of all orders but the first (Hillaire 2020)
+    Isotropic,
+    /// Light scattered once (Nishita et al. 1993)
+    Single,
+    /// O'Neil's exponential planet (2005): sun up, on the ground
+    Oneil,
+    /// Hosek & Wilkie's fitted clear sky (2012): sun up, on the ground, turbidity 1 to 10
+    HosekWilkie,
+    /// Preetham et al.'s fitted clear sky (1999): sun up, on the ground, turbidity 2 to 6
+    Preetham,
+    /// Perez et al.'s all-weather luminance (1993): sun above 1 degree, on the ground
+    Perez,
+    /// The CIE's standard skies' luminance (2003): sun up, on the ground
+    Cie,
+}
+
+impl From<RenderMethod> for Method {
+    fn from(name: RenderMethod) -> Self {
+        match name {
+            RenderMethod::Solved => Self::Solved,
+            RenderMethod::Paths => Self::Paths,
+            RenderMethod::Judge => Self::Judge,
+            RenderMethod::Isotropic => Self::Isotropic,
+            RenderMethod::Single => Self::Single,
+            RenderMethod::Oneil => Self::Oneil,
+            RenderMethod::HosekWilkie => Self::HosekWilkie,
+            RenderMethod::Preetham => Self::Preetham,
+            RenderMethod::Perez => Self::Perez,
+            RenderMethod::Cie => Self::Cie,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -555,7 +624,14 @@ impl RenderArgs {
                 .polarisation
                 .map_or(base.polarisation && self.filter.is_none(), |switch| switch == Switch::On),
             filter_deg: self.filter.or(base.filter_deg.filter(|_| self.polarisation != Some(Switch::On))),
+            colour: self.colour.unwrap_or(base.colour),
             method: self.method.map_or(base.method, Into::into),
+            steps: self.steps.or(base.steps),
+            sky_type: self.sky_type.or(base.sky_type),
+            orders: self.orders.or(base.orders),
+            depolarisation: self.depolarisation.unwrap_or(base.depolarisation),
+            sun_shape: self.sun_shape.unwrap_or(base.sun_shape),
+            flat: self.flat.map_or(base.flat, |switch| switch == Switch::On),
             seed: self.seed.unwrap_or(base.seed),
             spp: self.spp.or(base.spp.filter(|_| !effort)),
             block: self.block.or(base.block).or(timed),

@@ -8,6 +8,9 @@ use crate::film::{DiscLayer, Estimate, Picture, exr, png, tone};
 use crate::render::left_out::{LeftOut, Off};
 use crate::render::{Head, Part, Rendering, Shard, Sky, State, Summary, Verdict, receipt};
 use crate::scene::Scene;
+use crate::spectrum::Wavelengths;
+use crate::transport::Method;
+use crate::transport::rungs::Rung;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -83,8 +86,8 @@ impl Product<'_> {
         let picture = Picture { film: &rendering.film, disc, colour: sky.colour() };
         let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(&picture));
         let attributes = receipt::receipt(scene, sky, &head.parts, rendering, summary, exposure_ev, verdict.as_ref());
-        let spectral = (args.spectral || scene.polarisation).then_some(scene.wavelengths_nm.nm());
-        let exr = exr::encode(&picture, spectral, &attributes).map_err(Failure::error)?;
+        let spectral = (args.spectral || scene.polarisation).then(|| scene.wavelengths());
+        let exr = exr::encode(&picture, spectral.as_ref().map(Wavelengths::nm), &attributes).map_err(Failure::error)?;
         let png = png::encode(&picture, exposure_ev).map_err(Failure::error)?;
         let polarisation = match png::encode_polarisation(&picture) {
             Some(png) => Some((files.polarisation(), png.map_err(Failure::error)?)),
@@ -218,10 +221,13 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, 
         [part] if part.shard == Shard::default() => (format!(", seed {}", part.seed), &[][..]),
         _ => (String::new(), parts),
     };
-    println!(
-        "picture     {width} x {height}, {} wavelengths, {samples} samples per pixel{blocks}{seed}",
-        sky.wavelengths()
-    );
+    let channels = if scene.method.is_dome() { "X, Y, Z".into() } else { format!("{} wavelengths", sky.wavelengths()) };
+    println!("picture     {width} x {height}, {channels}, {samples} samples per pixel{blocks}{seed}");
+    if sky.is_noiseless() && scene.method != Method::Solved {
+        let rung = Rung::of(scene.method);
+        println!("method      {}: {}", rung.name, rung.source);
+        println!("            leaves out {}", rung.leaves_out);
+    }
     for part in parts {
         println!("            {part}");
     }
@@ -234,7 +240,7 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, 
             percent(error)
         );
     }
-    if errors.relative.is_infinite() && sky.is_solved() {
+    if errors.relative.is_infinite() && sky.is_noiseless() {
         return;
     }
     println!(

@@ -33,6 +33,9 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
             (args.scene(base.unwrap_or_default())?, None)
         }
     };
+    if args.files.spectral && scene.method.is_dome() {
+        return Err(Failure::usage("a fitted sky has no spectrum: leave out --spectral"));
+    }
     let deadline = args.time.and_then(|time| begin.checked_add(time));
     let part = match kept.as_ref().map(|state| state.head.parts.as_slice()) {
         Some([part]) => *part,
@@ -117,6 +120,7 @@ pub(super) fn sky(scene: &Scene, data: &Data, kept: Option<&Path>) -> Result<Sky
     Sky::kept(scene, data, kept).map_err(|error| match error {
         RenderError::Scene(error) => error.into(),
         RenderError::Air(error) => Failure::usage(error),
+        RenderError::Refused(error) => Failure::usage(error),
         other => Failure::error(other),
     })
 }

@@ -7,6 +7,7 @@ use super::{Failure, Outcome};
 use crate::data::Data;
 use crate::film::png;
 use crate::render::RenderError;
+use crate::study::ladder::Size;
 use crate::study::{self, Chart};
 
 /// Makes a chart from the data; hears of progress.
@@ -16,6 +17,11 @@ type MakeChart = fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError>;
 type Make = Box<dyn Fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Made, RenderError> + Sync>;
 
 pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
+    if args.quick && !matches!(args.what, StudyName::Ladder) {
+        return Err(Failure::usage("--quick belongs to the ladder: leave it out"));
+    }
+    let pool = super::pool(args.threads)?;
+    let (size, threads) = (if args.quick { Size::Quick } else { Size::Full }, pool.current_num_threads());
     let chart = |make: MakeChart| -> Make { Box::new(move |data, progress| make(data, progress).map(Made::from)) };
     let make: Make = match args.what {
         StudyName::Columns => chart(study::columns::make),
@@ -25,6 +31,10 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
         StudyName::Polarisation => Box::new(|data, progress| {
             let (chart, measured) = study::polarisation::make(data, progress)?;
             Ok(Made { measured: Some(measured.csv().into_bytes()), ..Made::from(chart) })
+        }),
+        StudyName::Ladder => Box::new(move |data, progress| {
+            let ladder = study::ladder::make(data, size, threads, progress)?;
+            Ok(Made { bytes: ladder.csv().into_bytes(), rows: ladder.summary(), measured: None })
         }),
         StudyName::Strip => Box::new(|data, progress| {
             let strip = study::strip::make(data, progress)?;
@@ -40,7 +50,6 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
     let data = Data::load(&args.data).map_err(Failure::error)?;
     let line = Line::new(args.quiet);
     let progress = |share: f64| line.show(share, |_| args.what.as_str().to_owned());
-    let pool = super::pool(args.threads)?;
     let made = pool.install(|| make(&data, &progress)).map_err(Failure::error)?;
     line.clear();
     tables::file::replace(&path, &made.bytes).map_err(|e| super::unwritable(&path, &e))?;
@@ -49,7 +58,7 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
     }
     if !args.quiet {
         println!("{}", made.rows.join("\n"));
-        println!("time        {} on {} threads", duration(line.elapsed().as_secs_f64()), pool.current_num_threads());
+        println!("time        {} on {threads} threads", duration(line.elapsed().as_secs_f64()));
         println!("written     {}", path.display());
         if made.measured.is_some() {
             println!("            {} (build again to carry it)", args.measured.display());

@@ -4,8 +4,9 @@
 //! between them; where it lies outside, nothing is said but why.
 
 use super::Sky;
-use crate::atmosphere::HazePhase;
+use crate::atmosphere::{Depolarisation, HazePhase};
 use crate::scene::Scene;
+use crate::transport::Method;
 use std::fmt::Write;
 use tables::views::{AerosolSource, Biome};
 
@@ -204,6 +205,9 @@ impl LeftOut {
         for (&nm, &albedo) in nm.iter().zip(sky.albedo()) {
             let (i, share) = between(&WAVELENGTHS, nm);
             let off = at(albedo, 1 + i).towards(at(albedo, 2 + i), share);
+            if off.rms <= 0.0 {
+                return Err(format!("{nm} nm with this aerosol and sun: noise hides it"));
+            }
             if off.rms > worst.0.rms {
                 worst = (off, nm);
             }
@@ -233,6 +237,13 @@ fn inside(scene: &Scene, amount: f64) -> Result<(), String> {
         (!scene.tables.is_empty(), "own tables".to_owned()),
         (scene.biome.is_some() && scene.phase == HazePhase::HenyeyGreenstein, "Henyey-Greenstein functions".into()),
         (scene.biome.is_some() && scene.aerosol_source != AerosolSource::Opac, "this source of aerosol".into()),
+        (
+            scene.method.estimator().is_none() && scene.method != Method::Solved,
+            "methods of less than all orders".into(),
+        ),
+        (scene.orders.is_some(), "some orders alone".into()),
+        (scene.flat, "a planet that is a plane".into()),
+        (scene.depolarisation != Depolarisation::default(), "air without depolarisation".into()),
         (scene.humidity_percent.is_some(), "another humidity than the type's own".into()),
         (amount > MOST_AEROSOL, format!("more than {MOST_AEROSOL} times the type's own aerosol")),
         (scene.sun_elevation_deg < SUNS[0], format!("the sun below {} degrees", SUNS[0])),

@@ -6,6 +6,7 @@
 
 mod certify;
 mod disc;
+mod domes;
 #[cfg(test)]
 mod honesty;
 pub mod left_out;
@@ -35,6 +36,7 @@ use crate::film::{EncodeError, Errors, Film, Row};
 use crate::scene::{MAX_SPP, Scene, SceneError};
 use crate::spectrum::linear_srgb;
 use crate::transport::SolveError;
+use crate::transport::rungs::Refusal;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::Instant;
@@ -56,6 +58,9 @@ pub enum RenderError {
     #[error(transparent)]
     Table(#[from] TableError),
     /// The method does not cover the scene.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+    /// There is no solved table for the scene.
     #[error(transparent)]
     Solve(#[from] SolveError),
     /// A picture cannot be encoded.

@@ -44,7 +44,7 @@ pub(super) fn is_shown(camera: &Camera, x: u32, y: u32) -> bool {
     camera.direction(f64::from(x) + 0.5, f64::from(y) + 0.5).is_some()
 }
 
-/// One sample of pixel (`x`, `y`) of a picture of some width, and the direction it looked in: of a solved table the first
+/// One sample of pixel (`x`, `y`) of a picture of some width, and the direction it looked in: without noise the first
 /// looks at the pixel's middle.
 pub(super) fn take(
     sky: &Sky,
@@ -54,7 +54,7 @@ pub(super) fn take(
     values: &mut [f64],
 ) -> DVec3 {
     let mut sampler = index.sampler(u64::from(y) * u64::from(width) + u64::from(x));
-    let middle = if sky.is_solved() && index.sample == 0 {
+    let middle = if sky.is_noiseless() && index.sample == 0 {
         camera.direction(f64::from(x) + 0.5, f64::from(y) + 0.5)
     } else {
         None

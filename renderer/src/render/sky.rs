@@ -2,14 +2,16 @@
 
 use super::RenderError;
 use super::certify::{self, Certifies};
+use super::domes;
 use crate::atmosphere::{Air, AirSettings, Columns, Haze, Medium, OzoneSource, Tolerance};
 use crate::data::{Data, Identity};
 use crate::geometry::{Place, Shape};
 use crate::light::{SunDisc, solar_angular_radius};
 use crate::polarisation::{Frame, Stokes};
 use crate::sampling::Sampler;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Scene, SceneError, SunShape};
 use crate::spectrum::{Colour, Packet, Wavelengths};
+use crate::transport::rungs::{Cheap, Conditions, Dome, Rung};
 use crate::transport::{self, Certificate, Estimator, Method, Panorama, Problem, SolveError, Tables};
 use glam::DVec3;
 use std::fmt::Debug;
@@ -32,6 +34,16 @@ pub struct Sky {
     sun_direction: DVec3,
     identities: Vec<Identity>,
     shows: Shows,
+    fitted: Option<Fitted>,
+    turbidity: f64,
+}
+
+/// A fitted sky in the place of Airlight's; the sun behind the air is Airlight's own.
+#[derive(Debug)]
+struct Fitted {
+    dome: Box<dyn Dome>,
+    /// Of the wavelengths in which the sun is seen.
+    colour: Colour,
 }
 
 /// What a picture shows of the light.
@@ -68,7 +80,7 @@ impl Sky {
         };
         check_own(scene, data)?;
         check_wavelengths(scene, data)?;
-        let wavelengths = &scene.wavelengths_nm;
+        let wavelengths = &scene.wavelengths();
         let albedo = scene.albedo_spectrum(data)?;
         let air = Air::new(
             data,
@@ -78,6 +90,7 @@ impl Sky {
                 ozone_source: scene.ozone_source,
                 ozone_du: scene.ozone_du,
                 top_m: scene.top_km * KM,
+                depolarisation: scene.depolarisation,
             },
         )?;
         let mut identities = data.identities.clone();
@@ -94,20 +107,10 @@ impl Sky {
         let air = air.with_haze(haze);
         let sun_direction = scene.sun_direction();
         let place = Place::above(scene.altitude_km * KM);
+        let turbidity = 1.0 + air.haze().map_or(0.0, Haze::optical_depth) / air.molecular_depth()?;
+        Rung::of(scene.method).covers(&conditions(scene, turbidity))?;
         let wanted = &looked_at(scene);
-        let parts = Parts {
-            wavelengths,
-            albedo: &albedo,
-            air: &air,
-            data,
-            method: scene.method,
-            polarised: scene.is_polarised(),
-            place,
-            sun_direction,
-            wanted,
-            table_error: scene.table_error,
-            kept,
-        };
+        let parts = Parts { wavelengths, albedo: &albedo, air: &air, data, place, sun_direction, wanted, scene, kept };
         let carriers = wavelengths.packets().into_iter().map(|packet| {
             let carrier = match packet.lanes {
                 1 => parts.carry::<1>(&packet),
@@ -117,12 +120,22 @@ impl Sky {
             };
             carrier.map(|carrier| (packet.range, carrier))
         });
+        let carriers = carriers.collect::<Result<_, _>>()?;
         let irradiance = wavelengths.nm().iter().map(|&nm| data.sun.irradiance_w_m2_nm.at(nm));
+        let mut irradiance_w_m2_nm: Vec<f64> = irradiance.collect::<Result<_, _>>()?;
+        let mut colour = scene.colour.colour(&data.sun, &data.observer, wavelengths)?;
+        let fitted = if scene.method.is_dome() {
+            let dome = domes::dome(scene, data, &air, turbidity)?;
+            irradiance_w_m2_nm = vec![1.0; 3];
+            Some(Fitted { dome, colour: std::mem::replace(&mut colour, Colour::direct()) })
+        } else {
+            None
+        };
         Ok(Self {
-            carriers: carriers.collect::<Result<_, _>>()?,
+            carriers,
             place,
-            colour: Colour::new(&data.sun, &data.observer, wavelengths)?,
-            irradiance_w_m2_nm: irradiance.collect::<Result<_, _>>()?,
+            colour,
+            irradiance_w_m2_nm,
             any_place: data.ozone_profiles.is_single() && scene.ozone_source == OzoneSource::McPetersLabow,
             albedo,
             air,
@@ -133,6 +146,8 @@ impl Sky {
                 None if scene.polarisation => Shows::Stokes,
                 None => Shows::Radiance,
             },
+            fitted,
+            turbidity,
         })
     }
 
@@ -140,8 +155,13 @@ impl Sky {
     /// error that scene asks for.
     ///
     /// # Errors
-    /// [`SolveError::Inexact`] if the tables are too far off there; then it is of neither scene.
+    /// [`SolveError::Inexact`] if the tables are too far off there; then it is of neither scene. [`SceneError::Refused`] of a fitted
+    /// sky, which belongs to one sun.
     pub fn turn(&mut self, scene: &Scene) -> Result<(), RenderError> {
+        if self.fitted.is_some() {
+            return Err(SceneError::Refused("a fitted sky belongs to one sun".into()).into());
+        }
+        Rung::of(scene.method).covers(&conditions(scene, self.turbidity))?;
         let wanted = looked_at(scene);
         (self.place, self.sun_direction) = (Place::above(scene.altitude_km * KM), scene.sun_direction());
         for (_, carrier) in &mut self.carriers {
@@ -150,10 +170,14 @@ impl Sky {
         Ok(())
     }
 
-    /// One unbiased estimate of the radiance factors (sr^-1) that arrive at the observer out of
+    /// One unbiased estimate of the radiance factors (sr^-1; X, Y and Z in cd/m^2 of a fitted sky) that arrive at the observer out of
     /// `direction`, without the solar disc. The stream is that of one sample: every packet of
     /// wavelengths begins with the same numbers, so that their paths, and their noise, are alike.
     pub fn radiance(&self, direction: DVec3, sampler: &Sampler, factors: &mut [f64]) {
+        if let Some(fitted) = &self.fitted {
+            factors.copy_from_slice(&fitted.dome.xyz(direction));
+            return;
+        }
         for (range, carrier) in &self.carriers {
             carrier.radiance(self.place, direction, &mut sampler.clone(), &mut factors[range.clone()]);
         }
@@ -211,6 +235,18 @@ impl Sky {
         self.table_error().is_some()
     }
 
+    /// Whether equal directions give equal radiances.
+    #[must_use]
+    pub fn is_noiseless(&self) -> bool {
+        self.fitted.is_some() || self.carriers.iter().all(|(_, carrier)| carrier.is_noiseless())
+    }
+
+    /// Bytes of the tables that pictures are made from; 0 of a method without any.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.carriers.iter().map(|(_, carrier)| carrier.bytes()).sum()
+    }
+
     /// Relative error of the solved tables as they state it themselves; `None` if there are none.
     #[must_use]
     pub fn table_error(&self) -> Option<f64> {
@@ -226,9 +262,20 @@ impl Sky {
     /// Adds the solar disc seen in `direction` through the air, in sr^-1, times `weight`.
     /// False, with nothing added, off the disc.
     pub fn add_disc(&self, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool {
-        self.carriers
-            .iter()
-            .all(|(range, carrier)| carrier.add_disc(self.place, direction, weight, &mut factors[range.clone()]))
+        self.seen_through_air(factors, |factors| {
+            let mut carriers = self.carriers.iter();
+            carriers
+                .all(|(range, carrier)| carrier.add_disc(self.place, direction, weight, &mut factors[range.clone()]))
+        })
+    }
+
+    /// Hands `add` the factors of all wavelengths; of a fitted sky what it adds to them goes to X, Y and Z.
+    fn seen_through_air<T>(&self, factors: &mut [f64], add: impl FnOnce(&mut [f64]) -> T) -> T {
+        let Some(fitted) = &self.fitted else { return add(factors) };
+        let mut spectral = vec![0.0; self.carriers.last().map_or(0, |(range, _)| range.end)];
+        let result = add(&mut spectral);
+        factors.iter_mut().zip(fitted.colour.xyz(&spectral)).for_each(|(factor, value)| *factor += value);
+        result
     }
 
     /// Irradiance of a level surface at the observer by direct sunlight, per unit solar irradiance:
@@ -240,16 +287,18 @@ impl Sky {
         const RINGS: u32 = 64;
         const SECTORS: u32 = 16;
         let mut factors = vec![0.0; self.wavelengths()];
-        for ring in 0..RINGS {
-            let mu = (f64::from(ring) + 0.5) / f64::from(RINGS);
-            let weight = 2.0 * mu / f64::from(RINGS * SECTORS);
-            for sector in 0..SECTORS {
-                let u = [1.0 - mu * mu, (f64::from(sector) + 0.5) / f64::from(SECTORS)];
-                for (range, carrier) in &self.carriers {
-                    carrier.add_direct(self.place, u, weight, &mut factors[range.clone()]);
+        self.seen_through_air(&mut factors, |factors| {
+            for ring in 0..RINGS {
+                let mu = (f64::from(ring) + 0.5) / f64::from(RINGS);
+                let weight = 2.0 * mu / f64::from(RINGS * SECTORS);
+                for sector in 0..SECTORS {
+                    let u = [1.0 - mu * mu, (f64::from(sector) + 0.5) / f64::from(SECTORS)];
+                    for (range, carrier) in &self.carriers {
+                        carrier.add_direct(self.place, u, weight, &mut factors[range.clone()]);
+                    }
                 }
             }
-        }
+        });
         factors
     }
 
@@ -259,7 +308,7 @@ impl Sky {
         &self.colour
     }
 
-    /// The sun's spectral irradiance above the atmosphere in W m^-2 nm^-1.
+    /// The sun's spectral irradiance above the atmosphere in W m^-2 nm^-1; ones of a fitted sky.
     #[must_use]
     pub fn irradiance_w_m2_nm(&self) -> &[f64] {
         &self.irradiance_w_m2_nm
@@ -271,7 +320,7 @@ impl Sky {
         &self.albedo
     }
 
-    /// Number of wavelengths.
+    /// Number of wavelengths; 3 of a fitted sky, which has X, Y and Z instead.
     #[must_use]
     pub fn wavelengths(&self) -> usize {
         self.irradiance_w_m2_nm.len()
@@ -289,6 +338,12 @@ impl Sky {
         self.any_place
     }
 
+    /// Vertical optical depth of molecules and aerosol at 550 nm over that of molecules.
+    #[must_use]
+    pub fn turbidity(&self) -> f64 {
+        self.turbidity
+    }
+
     /// The tables that were used.
     #[must_use]
     pub fn identities(&self) -> &[Identity] {
@@ -299,6 +354,17 @@ impl Sky {
     #[must_use]
     pub fn sun_direction(&self) -> DVec3 {
         self.sun_direction
+    }
+}
+
+/// What the scene asks of its method.
+fn conditions(scene: &Scene, turbidity: f64) -> Conditions {
+    Conditions {
+        sun_elevation_deg: scene.sun_elevation_deg,
+        altitude_km: scene.altitude_km,
+        turbidity,
+        polarised: scene.is_polarised(),
+        flat: scene.flat,
     }
 }
 
@@ -335,7 +401,8 @@ fn check_wavelengths(scene: &Scene, data: &Data) -> Result<(), TableError> {
         let identity = data.identities.iter().find(|identity| identity.kind == kind);
         identity.map_or_else(|| kind.file_name(), |identity| identity.file.clone())
     };
-    let nm = scene.wavelengths_nm.nm();
+    let wavelengths = scene.wavelengths();
+    let nm = wavelengths.nm();
     let ends = [nm.first(), nm.last(), Some(&REFERENCE_NM)];
     let reach = |kind: Kind, curve: &Curve| {
         ends.into_iter().flatten().try_for_each(|&nm| curve.at(nm).map(drop)).map_err(|e| e.at(Path::new(&of(kind))))
@@ -373,12 +440,10 @@ struct Parts<'a> {
     albedo: &'a [f64],
     air: &'a Air,
     data: &'a Data,
-    method: Method,
-    polarised: bool,
     place: Place,
     sun_direction: DVec3,
     wanted: &'a [DVec3],
-    table_error: f64,
+    scene: &'a Scene,
     kept: Option<&'a Path>,
 }
 
@@ -386,9 +451,10 @@ impl Parts<'_> {
     fn carry<const L: usize>(&self, packet: &Packet) -> Result<Box<dyn Carrier>, RenderError> {
         let nm: [f64; L] = self.wavelengths.lanes(packet);
         let last = packet.range.end - 1;
-        let shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
+        let (scene, polarised) = (self.scene, self.scene.is_polarised());
+        let shape = if scene.flat { Shape::Flat } else { Shape::Sphere { radius_m: EARTH_RADIUS_M } };
         let medium = self.air.medium(&nm)?;
-        if self.polarised && !medium.polarises() {
+        if polarised && !medium.polarises() {
             return Err(SceneError::Refused(
                 "a phase function without a scattering matrix (Henyey-Greenstein) leaves polarisation unknown: take \
                  --phase mie"
@@ -397,17 +463,23 @@ impl Parts<'_> {
             .into());
         }
         let albedo = std::array::from_fn(|lane| self.albedo[(packet.range.start + lane).min(last)]);
-        let sun = SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius())?;
-        let means = match self.method.estimator() {
-            None => {
+        let sun = match scene.sun_shape {
+            SunShape::Disc => SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius())?,
+            SunShape::Even => SunDisc::darkened(self.sun_direction, solar_angular_radius(), vec![[1.0; L]]),
+            SunShape::Point => SunDisc::beam(self.sun_direction),
+        };
+        let means = match (scene.method.estimator(), scene.method) {
+            (Some(estimator), _) => Means::Estimated(estimator, Columns::new(&medium, shape, Tolerance::RENDER)),
+            (None, Method::Solved) => {
                 let (view, sky) = ((self.place, self.sun_direction), (&medium, shape, albedo));
-                let tables = Tables::within(self.table_error, view, sky, self.kept)?;
+                let tables = Tables::within(scene.table_error, view, sky, self.kept)?;
                 let (error, seen) = seen(&tables, self.place, &sun, self.wanted)?;
                 Means::Solved { tables, error, seen }
             }
-            Some(estimator) => Means::Estimated(estimator, Columns::new(&medium, shape, Tolerance::RENDER)),
+            (None, method) => Means::Cheap(Cheap::new(method, &medium, shape, albedo, scene.steps)),
         };
-        Ok(Box::new(Lanes { means, shape, medium, albedo, sun, polarised: self.polarised, count: packet.range.len() }))
+        let (max_orders, count) = (scene.orders, packet.range.len());
+        Ok(Box::new(Lanes { means, shape, medium, albedo, sun, polarised, max_orders, count }))
     }
 }
 
@@ -444,6 +516,8 @@ trait Carrier: Debug + Send + Sync {
     fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool;
     fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]);
     fn table_error(&self) -> Option<f64>;
+    fn is_noiseless(&self) -> bool;
+    fn bytes(&self) -> usize;
     /// Turns to another observer and sun.
     fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError>;
     /// A certificate of the solved table for its observer, of so many wavelengths.
@@ -460,6 +534,8 @@ enum Means<const L: usize> {
         error: f64,
         seen: Vec<Panorama<L>>,
     },
+    /// None behind a fitted sky, where only the sun is asked for.
+    Cheap(Option<Cheap<L>>),
 }
 
 #[derive(Debug)]
@@ -471,6 +547,7 @@ struct Lanes<const L: usize> {
     sun: SunDisc<L>,
     /// Whether light is followed with its polarisation.
     polarised: bool,
+    max_orders: Option<u32>,
     /// Wavelengths of the packet, at most L.
     count: usize,
 }
@@ -484,7 +561,7 @@ impl<const L: usize> Lanes<L> {
             albedo: self.albedo,
             sun: Some(&self.sun),
             environment: None,
-            max_orders: None,
+            max_orders: self.max_orders,
         }
     }
 }
@@ -501,6 +578,12 @@ impl<const L: usize> Carrier for Lanes<L> {
                         *factor += radiance / seen.len() as f64;
                     }
                 }
+                return;
+            }
+            Means::Cheap(cheap) => {
+                let seen =
+                    cheap.as_ref().map_or([0.0; L], |cheap| cheap.radiance(from, direction, self.sun.direction()));
+                factors.copy_from_slice(&seen[..factors.len()]);
                 return;
             }
         };
@@ -530,7 +613,19 @@ impl<const L: usize> Carrier for Lanes<L> {
     fn table_error(&self) -> Option<f64> {
         match &self.means {
             Means::Solved { error, .. } => Some(*error),
-            Means::Estimated(..) => None,
+            Means::Estimated(..) | Means::Cheap(_) => None,
+        }
+    }
+
+    fn is_noiseless(&self) -> bool {
+        !matches!(self.means, Means::Estimated(..))
+    }
+
+    fn bytes(&self) -> usize {
+        match &self.means {
+            Means::Estimated(_, columns) => columns.bytes(),
+            Means::Solved { tables, .. } => tables.solved.bytes(),
+            Means::Cheap(cheap) => cheap.as_ref().map_or(0, Cheap::bytes),
         }
     }
 

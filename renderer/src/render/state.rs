@@ -152,7 +152,7 @@ impl State {
         let head: Head = serde_json::from_slice(head).map_err(|e| StateError::Head(excerpt(&e.to_string())))?;
         head.validate()?;
         let (width, height) = head.scene.size();
-        let film = Film::read(width, height, head.scene.wavelengths_nm.nm().len(), head.scene.polarisation, film)?;
+        let film = Film::read(width, height, head.scene.channels(), head.scene.polarisation, film)?;
         Ok(Self { head, film })
     }
 }

@@ -80,7 +80,7 @@ fn estimate(
     draw: impl Fn(&mut Sampler) -> (DVec3, f64) + Sync,
 ) -> Estimate {
     let (mut count, mut mean, mut squares) = (0.0, 0.0, 0.0);
-    let most = if sky.is_solved() { SOLVED } else { SEQUENCES.1 };
+    let most = if sky.is_noiseless() { SOLVED } else { SEQUENCES.1 };
     for first in (0..most).step_by(SEQUENCES.0 as usize) {
         // Collected in order and summed by one thread: the same sum for any number of threads.
         let luminances: Vec<f64> = (first..first + SEQUENCES.0)

@@ -1,6 +1,7 @@
 //! Behaviour of whole pictures, on the tables of the repository.
 
 mod polarised;
+mod rungs;
 
 use super::*;
 use crate::data::Data;

@@ -6,14 +6,14 @@
 mod names;
 mod validate;
 
-pub use names::CameraKind;
 pub(crate) use names::word;
+pub use names::{CameraKind, SunShape};
 pub use validate::SceneError;
 
-use crate::atmosphere::{Amount, HazePhase, HazeSettings, OzoneSource};
+use crate::atmosphere::{Amount, Depolarisation, HazePhase, HazeSettings, OzoneSource};
 use crate::camera::{Camera, Projection, direction_at};
 use crate::data::Data;
-use crate::spectrum::Wavelengths;
+use crate::spectrum::{Scheme, Wavelengths};
 use crate::transport::Method;
 use glam::DVec3;
 use serde::de::Visitor;
@@ -83,6 +83,9 @@ pub struct Scene {
     pub albedo: Albedo,
     /// Wavelengths in nm. Default: 16 from 380 to 780 nm.
     pub wavelengths_nm: Wavelengths,
+    /// How wavelengths become colour; any but `spectral` brings its own wavelengths.
+    #[serde(skip_serializing_if = "is_default")]
+    pub colour: Scheme,
     /// Projection.
     pub camera: CameraKind,
     /// Field of view in degrees: of the width (pinhole, 0.01 to 179, default 60) or of
@@ -110,6 +113,25 @@ pub struct Scene {
     pub filter_deg: Option<f64>,
     /// How radiance is found.
     pub method: Method,
+    /// Points on each line of sight of the methods `single`, `isotropic` and `oneil`, 2 to 4096; the method's own number if not
+    /// given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steps: Option<u32>,
+    /// Type of the method `cie`, 1 to 15; 12, the clear sky, if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sky_type: Option<u8>,
+    /// The most scatterings and reflections of a path, 1 to 1000; all if not given. For the methods `paths` and `judge`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub orders: Option<u32>,
+    /// Whether molecules scatter as they do, or as if they were spheres.
+    #[serde(skip_serializing_if = "is_default")]
+    pub depolarisation: Depolarisation,
+    /// Form of the sun as a light.
+    #[serde(skip_serializing_if = "is_default")]
+    pub sun_shape: SunShape,
+    /// Whether the planet is a plane, the layers without end; the sun then stands above the horizon.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub flat: bool,
     /// Seed of the random numbers.
     pub seed: u64,
     /// Samples per pixel, 1 to 10^9, rounded up to whole blocks; with `error` the most of them.
@@ -155,6 +177,7 @@ impl Default for Scene {
             tables: Vec::new(),
             albedo: Albedo::Grey(0.1),
             wavelengths_nm: Wavelengths::default(),
+            colour: Scheme::Spectral,
             camera: CameraKind::Fisheye,
             fov_deg: None,
             view_azimuth_deg: None,
@@ -165,6 +188,12 @@ impl Default for Scene {
             polarisation: false,
             filter_deg: None,
             method: Method::Solved,
+            steps: None,
+            sky_type: None,
+            orders: None,
+            depolarisation: Depolarisation::Measured,
+            sun_shape: SunShape::Disc,
+            flat: false,
             seed: 0,
             spp: None,
             block: None,
@@ -247,6 +276,18 @@ impl Scene {
         self.altitude_km >= self.top_km
     }
 
+    /// The wavelengths that are followed: the scene's, or those of its [`Scheme`].
+    #[must_use]
+    pub fn wavelengths(&self) -> Wavelengths {
+        self.colour.wavelengths().unwrap_or_else(|| self.wavelengths_nm.clone())
+    }
+
+    /// Numbers of a pixel: one for each wavelength, or X, Y and Z of a fitted sky.
+    #[must_use]
+    pub fn channels(&self) -> usize {
+        if self.method.is_dome() { 3 } else { self.wavelengths().nm().len() }
+    }
+
     /// How much of the aerosol there is, and in which state.
     #[must_use]
     pub fn haze(&self) -> HazeSettings {
@@ -287,10 +328,10 @@ impl Scene {
         })
     }
 
-    /// Samples per pixel if nothing is said of them: [`DEFAULT_SPP`], or one, at the pixel's middle, of a solved table, which has no noise.
+    /// Samples per pixel if nothing is said of them: [`DEFAULT_SPP`], or one, at the pixel's middle, of a method without noise.
     #[must_use]
     pub fn default_spp(&self) -> u32 {
-        if self.method == Method::Solved { 1 } else { DEFAULT_SPP }
+        if self.method.estimator().is_none() { 1 } else { DEFAULT_SPP }
     }
 
     fn field_of_view_deg(&self) -> f64 {
@@ -326,10 +367,17 @@ impl Scene {
     /// Albedo of the ground at each wavelength.
     ///
     /// # Errors
+    /// As [`Scene::albedo_at`].
+    pub fn albedo_spectrum(&self, data: &Data) -> Result<Vec<f64>, SceneError> {
+        self.albedo_at(data, self.wavelengths().nm())
+    }
+
+    /// Albedo of the ground at some wavelengths in nm.
+    ///
+    /// # Errors
     /// [`SceneError::Unknown`] for a ground that the data do not have, [`SceneError::Ground`]
     /// for a wavelength that its spectrum does not reach.
-    pub fn albedo_spectrum(&self, data: &Data) -> Result<Vec<f64>, SceneError> {
-        let wavelengths_nm = self.wavelengths_nm.nm();
+    pub fn albedo_at(&self, data: &Data, wavelengths_nm: &[f64]) -> Result<Vec<f64>, SceneError> {
         let name = match &self.albedo {
             Albedo::Grey(value) => return Ok(vec![*value; wavelengths_nm.len()]),
             Albedo::Ground(name) => name,
@@ -341,6 +389,11 @@ impl Scene {
         let at = |&nm: &f64| spectrum.at(nm).map_err(|source| SceneError::Ground { name: name.clone(), source });
         wavelengths_nm.iter().map(at).collect()
     }
+}
+
+/// Whether a choice is the default one, which files leave out.
+fn is_default<T: Copy + PartialEq + Default>(choice: &T) -> bool {
+    *choice == T::default()
 }
 
 /// A relative path that stays below its folder, with forward slashes; of any other the name of the file.
@@ -462,7 +515,18 @@ mod tests {
         assert_eq!(of("../elsewhere/haze.table"), ["haze.table"]);
         assert_eq!(of("./own/haze.table"), ["own/haze.table"]);
         let json = Scene::default().to_json();
-        let newer = ["tables", "polarisation", "filter_deg"];
+        let newer = [
+            "tables",
+            "polarisation",
+            "filter_deg",
+            "colour",
+            "steps",
+            "sky_type",
+            "orders",
+            "depolarisation",
+            "sun_shape",
+            "flat",
+        ];
         assert!(newer.iter().all(|key| !json.contains(key)), "an old scene reads as before");
     }
 

@@ -14,6 +14,19 @@ pub enum CameraKind {
     Latlong,
 }
 
+/// Form of the sun as a light.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum SunShape {
+    /// A disc that is darker towards its limb, as measured
+    #[default]
+    Disc,
+    /// A disc as bright at its limb as in its middle
+    Even,
+    /// A point: all light from one direction, and no disc to be seen
+    Point,
+}
+
 /// Words for aerosols in scene files: the names of the tables, and `none`.
 pub(crate) mod word {
     use serde::{Deserialize, Deserializer, Serializer};

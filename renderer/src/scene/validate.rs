@@ -2,7 +2,7 @@
 
 use super::{Albedo, CameraKind, MAX_BLOCK, MAX_SPP, Scene};
 use crate::film::Film;
-use crate::spectrum::SpectrumError;
+use crate::spectrum::{Scheme, SpectrumError, Wavelengths};
 use crate::transport::Method;
 use tables::{TableError, excerpt, nearest};
 
@@ -97,6 +97,7 @@ impl Scene {
         self.validate_aerosol()?;
         self.validate_view()?;
         self.validate_polarisation()?;
+        self.validate_method()?;
         optional("exposure", self.exposure_ev, -30.0, 30.0, " EV")?;
         optional("spp", self.spp.map(f64::from), 1.0, f64::from(MAX_SPP), "")?;
         optional("error", self.error, 1e-5, 1.0, "")?;
@@ -135,6 +136,41 @@ impl Scene {
         Ok(())
     }
 
+    /// What only some methods know.
+    fn validate_method(&self) -> Result<(), SceneError> {
+        let refuse = |text: String| Err(SceneError::Refused(text));
+        optional("steps", self.steps.map(f64::from), 2.0, 4096.0, "")?;
+        optional("sky-type", self.sky_type.map(f64::from), 1.0, 15.0, "")?;
+        optional("orders", self.orders.map(f64::from), 1.0, 1000.0, "")?;
+        if self.steps.is_some() && !matches!(self.method, Method::Single | Method::Isotropic | Method::Oneil) {
+            return refuse("steps are those of a line of sight: take --method single, isotropic or oneil".into());
+        }
+        if self.sky_type.is_some() && self.method != Method::Cie {
+            return refuse("a sky type is one of the CIE's fifteen: take --method cie".into());
+        }
+        if self.orders.is_some() && self.method.estimator().is_none() {
+            return refuse("orders of scattering are counted along paths: take --method paths or judge".into());
+        }
+        if self.colour != Scheme::Spectral && self.wavelengths_nm != Wavelengths::default() {
+            let (name, own) = (self.colour.name(), self.colour.wavelengths().unwrap_or_default());
+            let own: Vec<String> = own.nm().iter().map(f64::to_string).collect();
+            return refuse(format!(
+                "colour {name} brings its own wavelengths ({} nm): leave out others",
+                own.join(", ")
+            ));
+        }
+        if self.colour != Scheme::Spectral && self.method.is_dome() {
+            return refuse("fitted skies have a colour of their own: leave out --colour".into());
+        }
+        if self.flat && self.sun_elevation_deg <= 0.0 {
+            return refuse("over a plane the sun stands above the horizon: its elevation must be above 0".into());
+        }
+        if self.flat && self.in_space() {
+            return refuse("over a plane there is no space to look from: the altitude must be below the top".into());
+        }
+        Ok(())
+    }
+
     fn validate_view(&self) -> Result<(), SceneError> {
         match self.camera {
             CameraKind::Fisheye => optional("fov", self.fov_deg, 1.0, 360.0, " degrees for a fisheye")?,
@@ -151,12 +187,12 @@ impl Scene {
         let (width, height) = self.size();
         range("width", f64::from(width), 1.0, MAX_SIZE, " pixels")?;
         range("height", f64::from(height), 1.0, MAX_SIZE, " pixels")?;
-        let bytes = Film::bytes(width, height, self.wavelengths_nm.nm().len(), self.polarisation);
+        let bytes = Film::bytes(width, height, self.channels(), self.polarisation);
         if bytes > MAX_FILM_BYTES {
             let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
             return Err(SceneError::Refused(format!(
                 "{width} x {height} pixels at {} wavelengths take {:.0} GiB; {:.0} GiB are possible",
-                self.wavelengths_nm.nm().len(),
+                self.channels(),
                 gib(bytes).ceil(),
                 gib(MAX_FILM_BYTES)
             )));
@@ -225,6 +261,24 @@ mod tests {
         let both = |s: &mut Scene| (s.polarisation, s.filter_deg, s.method) = (true, Some(0.0), Method::Judge);
         assert!(refusal(both).contains("leave out"));
         assert_eq!(refusal(|s| s.filter_deg = Some(361.0)), "filter is 361; -360 to 360 degrees is possible");
+    }
+
+    #[test]
+    fn what_only_some_methods_know_is_refused_by_the_others() {
+        assert!(refusal(|s| s.steps = Some(20)).contains("--method single"));
+        assert!(refusal(|s| (s.method, s.steps) = (Method::Single, Some(1))).contains("2 to 4096"));
+        assert!(refusal(|s| s.sky_type = Some(3)).contains("--method cie"));
+        assert!(refusal(|s| (s.method, s.sky_type) = (Method::Cie, Some(16))).contains("1 to 15"));
+        assert!(refusal(|s| s.orders = Some(2)).contains("--method paths"));
+        assert!(refusal(|s| (s.method, s.orders) = (Method::Paths, Some(0))).contains("1 to 1000"));
+        let few = Wavelengths::visible(4).expect("valid");
+        assert!(refusal(|s| (s.colour, s.wavelengths_nm) = (Scheme::Four, few)).contains("430, 490, 560, 630 nm"));
+        assert!(refusal(|s| (s.colour, s.method) = (Scheme::Rgb, Method::Preetham)).contains("--colour"));
+        assert!(refusal(|s| (s.flat, s.sun_elevation_deg) = (true, 0.0)).contains("above 0"));
+        assert!(refusal(|s| (s.flat, s.altitude_km) = (true, 120.0)).contains("below the top"));
+        Scene { colour: Scheme::Rgb, method: Method::Single, steps: Some(20), ..Scene::default() }
+            .validate()
+            .expect("valid");
     }
 
     #[test]

@@ -47,6 +47,24 @@ impl Colour {
         })
     }
 
+    /// From the XYZ of a radiance factor of 1 sr^-1 at each wavelength alone.
+    #[must_use]
+    pub fn weighed(weights: Vec<[f64; 3]>) -> Self {
+        Self { weights }
+    }
+
+    /// Of factors that are X, Y and Z themselves in cd/m^2, as fitted skies give them.
+    #[must_use]
+    pub fn direct() -> Self {
+        Self::weighed(vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    }
+
+    /// XYZ of a radiance factor of 1 sr^-1 at every wavelength.
+    #[must_use]
+    pub fn white(&self) -> [f64; 3] {
+        self.weights.iter().fold([0.0; 3], |sum, w| std::array::from_fn(|i| sum[i] + w[i]))
+    }
+
     /// The weights for nodes in nm and E(lambda) c(lambda).
     fn weigh(
         nodes: &[f64],
@@ -126,6 +144,19 @@ const LUMINANCE: [f64; 3] = [0.212_639_005_9, 0.715_168_678_8, 0.072_192_315_4];
 #[must_use]
 pub fn linear_srgb(xyz: [f64; 3]) -> [f64; 3] {
     SRGB_FROM_XYZ.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
+}
+
+/// Columns X, Y, Z of the primaries of sRGB: the inverse of [`linear_srgb`]'s matrix, with luminances [`LUMINANCE`].
+const XYZ_FROM_SRGB: [[f64; 3]; 3] = [
+    [LUMINANCE[0] * 0.64 / 0.33, LUMINANCE[1] * 0.30 / 0.60, LUMINANCE[2] * 0.15 / 0.06],
+    LUMINANCE,
+    [LUMINANCE[0] * 0.03 / 0.33, LUMINANCE[1] * 0.10 / 0.60, LUMINANCE[2] * 0.79 / 0.06],
+];
+
+/// CIE XYZ of a linear sRGB colour, in its unit: the inverse of [`linear_srgb`].
+#[must_use]
+pub fn xyz(rgb: [f64; 3]) -> [f64; 3] {
+    XYZ_FROM_SRGB.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2])
 }
 
 /// Luminance Y = 0.2126 R + 0.7152 G + 0.0722 B of a linear sRGB colour, in its unit.
@@ -238,5 +269,7 @@ mod tests {
             assert!(close(rgb, unit), "{rgb:?}");
         }
         assert!((luminance([1.0; 3]) - 1.0).abs() < 1e-9);
+        let there_and_back = linear_srgb(super::xyz([0.2, -0.1, 0.7]));
+        assert!(close(there_and_back, [0.2, -0.1, 0.7]), "{there_and_back:?}");
     }
 }

@@ -1,7 +1,11 @@
 //! Wavelengths: which are simulated, how they are carried, and what colour they make.
 
 mod colour;
+mod difference;
+mod scheme;
 mod wavelengths;
 
-pub use colour::{Colour, linear_srgb, luminance};
+pub use colour::{Colour, linear_srgb, luminance, xyz};
+pub use difference::{ciede2000, lab};
+pub use scheme::Scheme;
 pub use wavelengths::{MAX_WAVELENGTHS, Packet, SpectrumError, Wavelengths};

@@ -16,6 +16,7 @@ mod judge;
 mod paths;
 mod radiation;
 mod ratio;
+pub mod rungs;
 mod scatter;
 mod solved;
 
@@ -41,17 +42,37 @@ pub enum Method {
     Paths,
     /// By [`Estimator::Judge`].
     Judge,
+    /// Light scattered once ([`rungs::single`]).
+    Single,
+    /// With an isotropic closure of all further orders ([`rungs::isotropic`]).
+    Isotropic,
+    /// On O'Neil's exponential planet ([`rungs::oneil`]).
+    Oneil,
+    /// A fitted clear sky ([`rungs::preetham`]).
+    Preetham,
+    /// A fitted clear sky ([`rungs::hosek_wilkie`]).
+    HosekWilkie,
+    /// A standard sky ([`rungs::cie`]).
+    Cie,
+    /// An all-weather sky ([`rungs::perez`]).
+    Perez,
 }
 
 impl Method {
-    /// Its estimator; none for solved tables.
+    /// Its estimator; none for methods without noise.
     #[must_use]
     pub fn estimator(self) -> Option<Estimator> {
         match self {
-            Self::Solved => None,
             Self::Paths => Some(Estimator::Paths),
             Self::Judge => Some(Estimator::Judge),
+            _ => None,
         }
+    }
+
+    /// Whether it is a fitted sky ([`rungs::Dome`]): a colour of each direction above the horizon, and no spectrum.
+    #[must_use]
+    pub fn is_dome(self) -> bool {
+        matches!(self, Self::Preetham | Self::HosekWilkie | Self::Cie | Self::Perez)
     }
 }
 

@@ -9,7 +9,7 @@ use tables::views::{AerosolSource, Biome};
 use tools::data::Data;
 use tools::study;
 #[cfg(feature = "plot")]
-use tools::{chart, column::Place, plot, study::thesis::Thesis};
+use tools::{chart, column::Place, ladder, plot, study::thesis::Thesis};
 
 /// What to draw, from which tables, to where.
 #[cfg(feature = "plot")]
@@ -140,7 +140,8 @@ pub(super) fn draw(args: &PlotArgs) -> Result<(), String> {
 #[cfg(feature = "plot")]
 #[derive(Args)]
 pub(super) struct ChartArgs {
-    /// CSV files: a line `# title`, the header panel,curve,X,Y with the names of the axes, and a row for each point
+    /// CSV files: a line `# title`, the header panel,curve,X,Y with the names of the axes, and a row for each point; or the rows of
+    /// `airlight study ladder`, which make a chart of all regimes and one of each
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// Say nothing but errors
@@ -154,14 +155,23 @@ pub(super) fn chart(args: &ChartArgs) -> Result<(), String> {
     for file in &args.files {
         let name = file.display().to_string();
         let bytes = std::fs::read(file).map_err(|e| format!("{name}: cannot be read: {e}"))?;
-        let figure = plot::chart::figure(&chart::parse(&name, &bytes).map_err(|e| e.to_string())?);
-        let drawn = [("svg", plot::svg(&figure)), ("png", plot::png(&figure))];
-        for (ending, bytes) in drawn {
-            let path = file.with_extension(ending);
-            tables::file::replace(&path, &bytes.map_err(|e| e.to_string())?)
-                .map_err(|e| format!("{}: cannot be written: {e}", path.display()))?;
-            if !args.quiet {
-                say(&path.display().to_string());
+        let figures = if ladder::is_ladder(&bytes) {
+            plot::ladder::figures(&ladder::parse(&name, &bytes).map_err(|e| e.to_string())?)
+        } else {
+            vec![(String::new(), plot::chart::figure(&chart::parse(&name, &bytes).map_err(|e| e.to_string())?))]
+        };
+        for (end, figure) in figures {
+            let mut stem = file.with_extension("").into_os_string();
+            stem.push(end);
+            for (ending, bytes) in [("svg", plot::svg(&figure)), ("png", plot::png(&figure))] {
+                let mut path = stem.clone();
+                path.push(format!(".{ending}"));
+                let path = PathBuf::from(path);
+                tables::file::replace(&path, &bytes.map_err(|e| e.to_string())?)
+                    .map_err(|e| format!("{}: cannot be written: {e}", path.display()))?;
+                if !args.quiet {
+                    say(&path.display().to_string());
+                }
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::PlotError;
 use super::canvas::{Canvas, Frame, Place, Point};
 use super::colours::{self, BLACK, GREY, GRID, WHITE};
-use super::model::{Axis, Cells, Colour, Curve, Figure, Key, Panel, Stroke};
+use super::model::{Axis, Cells, Colour, Curve, Figure, Key, Label, Panel, Stroke};
 use plotters::backend::DrawingBackend;
 
 /// Width and height of a picture.
@@ -156,10 +156,64 @@ fn draw_panel<B: DrawingBackend>(
         let points: Vec<Option<Point>> = curve.points.iter().map(|&(x, y)| place(x, y)).collect();
         canvas.curve(&points, frame, curve.colour, curve.stroke)?;
     }
+    let named = panel.labels.iter().filter_map(|label| Some((place(label.at.0, label.at.1)?, label)));
+    draw_labels(canvas, &named.collect::<Vec<_>>(), frame)?;
     canvas.rectangle(frame, BLACK, false)?;
     canvas.text(&panel.x.label, (0.5 * (frame.left + frame.right), frame.bottom + 44.0), LABEL, BLACK, Place::Below)?;
     canvas.text(&panel.y.label, (left + 14.0, 0.5 * (frame.top + frame.bottom)), LABEL, BLACK, Place::Upwards)?;
     draw_key(canvas, panel, frame)
+}
+
+/// Size of the names of points, and their distance.
+const NAME: f64 = 15.0;
+const NAME_GAP: f64 = 8.0;
+
+/// Draws names beside their points: right, left, above or below, nearest first, where neither the frame nor a point nor a name that
+/// stands already is in the way; a name without room is left out.
+fn draw_labels<B: DrawingBackend>(
+    canvas: &mut Canvas<B>,
+    labels: &[(Point, &Label)],
+    frame: Frame,
+) -> Result<(), PlotError> {
+    const DISC: f64 = 6.0;
+    let around = |(x, y): Point, wide: f64, high: f64| Frame {
+        left: x - wide,
+        top: y - high,
+        right: x + wide,
+        bottom: y + high,
+    };
+    let meet = |a: &Frame, b: &Frame| a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    let mut taken: Vec<Frame> = labels.iter().map(|(at, _)| around(*at, DISC, DISC)).collect();
+    for &((x, y), label) in labels {
+        let (wide, high) = (0.5 * canvas.text_width(&label.text, NAME), 0.5 * NAME);
+        let side = wide + NAME_GAP;
+        let places = (0..6).map(f64::from).flat_map(|row| {
+            let off = row * NAME;
+            [
+                (side, -off),
+                (-side, -off),
+                (side, off),
+                (-side, off),
+                (0.0, -off - 2.0 * NAME_GAP),
+                (0.0, off + 2.0 * NAME_GAP),
+            ]
+        });
+        let mut boxes = places.map(|(dx, dy)| around((x + dx, y + dy), wide, high));
+        let free = boxes.find(|name| {
+            let inside = name.left > frame.left && name.right < frame.right && name.top > frame.top;
+            inside && name.bottom < frame.bottom && !taken.iter().any(|other| meet(name, other))
+        });
+        let Some(name) = free else { continue };
+        let middle = (0.5 * (name.left + name.right), 0.5 * (name.top + name.bottom));
+        // A name that stands apart is led to its point.
+        if (middle.1 - y).abs() > 2.5 * NAME_GAP {
+            let edge = if middle.1 < y { name.bottom } else { name.top };
+            canvas.line((x, y), (x.clamp(name.left, name.right), edge), label.colour, 0.7)?;
+        }
+        canvas.text(&label.text, middle, NAME, label.colour, Place::Centred)?;
+        taken.push(name);
+    }
+    Ok(())
 }
 
 fn draw_ticks<B: DrawingBackend>(canvas: &mut Canvas<B>, panel: &Panel, frame: Frame) -> Result<(), PlotError> {

@@ -11,6 +11,7 @@ mod coefficients;
 pub mod colours;
 mod depth;
 mod grids;
+pub mod ladder;
 mod layout;
 mod light;
 pub mod model;

@@ -45,6 +45,8 @@ pub struct Panel {
     pub areas: Vec<Area>,
     /// Curves, the first at the bottom.
     pub curves: Vec<Curve>,
+    /// Names beside points, drawn last, the first with the best place.
+    pub labels: Vec<Label>,
     /// Where the names of the curves stand.
     pub key: Key,
 }
@@ -54,7 +56,7 @@ impl Panel {
     #[must_use]
     pub fn new(x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
         let (title, cells, areas) = (String::new(), None, Vec::new());
-        Self { title, x, y, share: 1.0, cells, areas, curves, key: Key::TopRight }
+        Self { title, x, y, share: 1.0, cells, areas, curves, labels: Vec::new(), key: Key::TopRight }
     }
 
     /// The same panel with a text above it.
@@ -75,11 +77,28 @@ impl Panel {
         Self { areas, ..self }
     }
 
+    /// The same panel with names beside points.
+    #[must_use]
+    pub fn labels(self, labels: Vec<Label>) -> Self {
+        Self { labels, ..self }
+    }
+
     /// The same panel with its key elsewhere.
     #[must_use]
     pub fn key(self, key: Key) -> Self {
         Self { key, ..self }
     }
+}
+
+/// The name of a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Label {
+    /// (x, y) of the point in the units of the axes.
+    pub at: (f64, f64),
+    /// The name.
+    pub text: String,
+    /// Colour.
+    pub colour: Colour,
 }
 
 /// Where the names of the curves stand.
