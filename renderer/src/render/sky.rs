@@ -392,7 +392,7 @@ impl Parts<'_> {
         let sun = SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius())?;
         let means = match self.method.estimator() {
             None => {
-                let (view, sky) = ((self.place, self.sun_direction), (&medium, shape, albedo));
+                let (view, sky) = ((self.place, self.sun_direction), (&medium, shape, albedo, self.polarised));
                 let tables = Tables::within(self.table_error, view, sky, self.kept)?;
                 let (error, seen) = seen(&tables, self.place, &sun, self.wanted)?;
                 Means::Solved { tables, error, seen }

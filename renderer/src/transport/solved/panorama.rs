@@ -11,7 +11,7 @@
 //! direction is looked at by itself.
 
 use super::line::MOST_SPECIES;
-use super::view::{Look, Seen};
+use super::view::{Look, See, Seen};
 use super::{Optics, Solved};
 use crate::geometry::Place;
 use crate::vectors::vectorised;
@@ -327,18 +327,6 @@ fn mirrored(intervals: usize, share: f64) -> [(usize, f64); NODES] {
     })
 }
 
-/// A look with what it sees.
-struct See<'a, const L: usize>(Look<'a, L>);
-
-impl<const L: usize> NullaryFnOnce for See<'_, L> {
-    type Output = Seen<L>;
-
-    #[inline(always)]
-    fn call(self) -> Seen<L> {
-        self.0.solved.look(&self.0)
-    }
-}
-
 /// What nodes say of a direction.
 struct Glance<'a, const L: usize> {
     solved: &'a Solved<L>,
@@ -369,6 +357,6 @@ impl<const L: usize> NullaryFnOnce for Glance<'_, L> {
             *value = sum;
         }
         let [rest, peaks, once @ ..] = values.map(|row| row.map(f64::from));
-        solved.shade(&Seen { rest, once, peaks }, towards, false)
+        solved.shade(&Seen { rest, once, peaks, linear: [[0.0; L]; 2] }, towards, false)
     }
 }
