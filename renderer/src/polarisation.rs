@@ -65,6 +65,14 @@ impl Stokes {
     }
 }
 
+impl Mul<f64> for Stokes {
+    type Output = Self;
+    #[inline]
+    fn mul(self, factor: f64) -> Self {
+        Self { i: self.i * factor, q: self.q * factor, u: self.u * factor }
+    }
+}
+
 impl AddAssign for Stokes {
     #[inline]
     fn add_assign(&mut self, other: Self) {

@@ -203,6 +203,12 @@ impl Sky {
         if matches!(self.shows, Shows::Filtered(_)) { 0.5 } else { 1.0 }
     }
 
+    /// Whether light is followed with its polarisation.
+    #[must_use]
+    pub fn is_polarised(&self) -> bool {
+        !matches!(self.shows, Shows::Radiance)
+    }
+
     /// Whether radiances come from solved tables, without noise.
     #[must_use]
     pub fn is_solved(&self) -> bool {
@@ -216,7 +222,7 @@ impl Sky {
         errors.reduce(|a, b| Some(a?.max(b?))).flatten()
     }
 
-    /// Certificates of the solved tables, packet by packet; `None` if there are none.
+    /// Certificates of the solved tables, packet by packet; `None` if there are none, or of polarised light.
     pub(super) fn certificates(&self) -> Option<Vec<Box<dyn Certifies + '_>>> {
         self.carriers.iter().map(|(range, carrier)| carrier.certificate(self.place, range.len())).collect()
     }
@@ -424,7 +430,7 @@ fn seen<const L: usize>(
 /// the packet's range.
 trait Carrier: Debug + Send + Sync {
     fn radiance(&self, from: Place, direction: DVec3, sampler: &mut Sampler, factors: &mut [f64]);
-    /// Hands the Stokes parameters of each lane to `see`; none of solved tables, which know none.
+    /// Hands the Stokes parameters of each lane to `see`.
     fn stokes(
         &self,
         from: Place,
@@ -438,7 +444,7 @@ trait Carrier: Debug + Send + Sync {
     fn table_error(&self) -> Option<f64>;
     /// Turns to another observer and sun.
     fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError>;
-    /// A certificate of the solved table for its observer, of so many wavelengths.
+    /// A certificate of the solved table for its observer, of so many wavelengths; none of polarised light.
     fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>>;
 }
 
@@ -513,10 +519,21 @@ impl<const L: usize> Carrier for Lanes<L> {
         sampler: &mut Sampler,
         see: &mut dyn FnMut(usize, Stokes),
     ) {
-        if let Means::Estimated(estimator, columns) = &self.means {
-            let seen = transport::stokes(*estimator, &self.problem(columns), from, direction, frame, sampler);
-            seen.into_iter().take(self.count).enumerate().for_each(|(lane, seen)| see(lane, seen));
-        }
+        let seen = match &self.means {
+            Means::Estimated(estimator, columns) => {
+                transport::stokes(*estimator, &self.problem(columns), from, direction, frame, sampler)
+            }
+            Means::Solved { tables, seen, .. } => {
+                let mut sum = [Stokes::default(); L];
+                for sun in seen {
+                    for (sum, one) in sum.iter_mut().zip(sun.stokes(&tables.solved, direction, frame)) {
+                        *sum += one * (seen.len() as f64).recip();
+                    }
+                }
+                sum
+            }
+        };
+        seen.into_iter().take(self.count).enumerate().for_each(|(lane, seen)| see(lane, seen));
     }
 
     fn table_error(&self) -> Option<f64> {
@@ -528,6 +545,9 @@ impl<const L: usize> Carrier for Lanes<L> {
 
     fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>> {
         let Means::Solved { tables: Tables { solved, .. }, .. } = &self.means else { return None };
+        if solved.is_polarised() {
+            return None;
+        }
         let columns = Columns::new(&self.medium, self.shape, Tolerance::RENDER);
         let certificate = Certificate::new(solved, columns, from, self.sun.direction());
         Some(Box::new(certify::Packet { solved, certificate, count }))

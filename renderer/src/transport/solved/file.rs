@@ -2,7 +2,7 @@
 //!
 //! A file holds `moment[altitude, sun_zenith, moment_index, lane]` and `irradiance[sun_zenith, lane]` in single precision, as they are in memory, so that
 //! what is read is what was solved. Its name has a hash of the atmosphere (densities, cross-sections, phase functions), the planet,
-//! the ground, the resolution and the program's version; a file of that name that holds something else is an error, not a table.
+//! the ground, whether light is polarised, the resolution and the program's version; a file of that name that holds something else is an error, not a table.
 
 use super::grid::Grid;
 use super::orders::Field;

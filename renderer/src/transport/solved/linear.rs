@@ -15,7 +15,7 @@
 
 use super::grid::{Between, Suns};
 use super::line::Crossing;
-use super::orders::{AZIMUTHS, Around, Batch, Field, Gathered, LANES, Turns, azimuth_cosines};
+use super::orders::{Around, Batch, Field, Gathered, LANES, Turns, azimuth_cosines};
 use super::rays::{Line, Node};
 use super::view::Sight;
 use super::{Optics, Solved};
@@ -173,8 +173,9 @@ impl<const L: usize> Sight<'_, L> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::harmonics::Moments;
+    use super::super::orders::AZIMUTHS;
     use super::*;
-    use crate::transport::solved::harmonics::Moments;
 
     #[test]
     fn sunlight_scattered_once_is_a_sum_of_vector_harmonics() {

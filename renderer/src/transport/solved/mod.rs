@@ -11,6 +11,8 @@
 //! holds them at some altitudes and suns, together with the irradiance of the ground; the field follows order after order:
 //! the moments of one are integrated along lines in all directions, and give those of the next.
 //!
+//! Of polarised light molecules need four numbers too, with vector harmonics (linear.rs).
+//!
 //! What is seen is integrated along the line of sight: sunlight scattered once with the phase functions themselves, and the
 //! table's sources. Radiance is never interpolated.
 
