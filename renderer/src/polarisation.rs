@@ -49,12 +49,27 @@ impl Stokes {
         Self { u: -self.u, ..self }
     }
 
+    /// The same light in a frame that `turn` leads to.
+    #[must_use]
+    #[inline]
+    pub fn turned(self, Turn { cos, sin }: Turn) -> Self {
+        Self { i: self.i, q: self.q * cos + self.u * sin, u: self.u * cos - self.q * sin }
+    }
+
     /// Radiance behind an ideal linear polariser whose axis is at `angle` (radians) from e1 towards e2:
     /// (I + Q cos 2a + U sin 2a) / 2.
     #[must_use]
     pub fn through(&self, angle: f64) -> f64 {
         let (sin, cos) = (2.0 * angle).sin_cos();
         0.5 * (self.i + self.q * cos + self.u * sin)
+    }
+}
+
+impl Mul<f64> for Stokes {
+    type Output = Self;
+    #[inline]
+    fn mul(self, factor: f64) -> Self {
+        Self { i: self.i * factor, q: self.q * factor, u: self.u * factor }
     }
 }
 
@@ -110,11 +125,18 @@ impl Frame {
         if square < STRAIGHT {
             return (Turn { cos: 1.0, sin: 0.0 }, self);
         }
-        let e2 = normal * square.sqrt().recip();
+        let plane = Self { e2: normal * square.sqrt().recip() };
+        (self.turn_to(plane, direction), plane)
+    }
+
+    /// The turn from this frame to another of the same direction.
+    #[must_use]
+    #[inline]
+    pub fn turn_to(self, other: Self, direction: DVec3) -> Turn {
         // e2' = -e1 sin(eta) + e2 cos(eta), e1 = e2 x d.
-        let (cos, sin) = (e2.dot(self.e2), direction.dot(self.e2.cross(e2)));
+        let (cos, sin) = (other.e2.dot(self.e2), direction.dot(self.e2.cross(other.e2)));
         let unit = (cos * cos + sin * sin).recip();
-        (Turn { cos: (cos * cos - sin * sin) * unit, sin: 2.0 * cos * sin * unit }, Self { e2 })
+        Turn { cos: (cos * cos - sin * sin) * unit, sin: 2.0 * cos * sin * unit }
     }
 }
 

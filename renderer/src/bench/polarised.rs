@@ -1,4 +1,4 @@
-//! What polarised transfer costs beside scalar transfer, and what it changes.
+//! What polarised transfer costs beside scalar transfer, what it changes, and how far off solved tables are.
 
 use super::towards;
 use crate::atmosphere::{Columns, Medium, Tolerance};
@@ -6,7 +6,7 @@ use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::polarisation::{Frame, Stokes};
 use crate::sampling::Sampler;
-use crate::transport::{self, Estimator, Problem};
+use crate::transport::{self, Estimator, Problem, Resolution, SolveError, Solved};
 use glam::DVec3;
 use std::time::Instant;
 use tables::units::EARTH_RADIUS_M;
@@ -16,6 +16,8 @@ const VIEWS: [(f64, f64); 6] = [(5.0, 90.0), (30.0, 0.0), (45.0, 120.0), (60.0, 
 
 /// Sequences of random numbers whose spread is the error of one.
 const REPLICATES: u64 = 32;
+
+const SHAPE: Shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
 
 /// The ground's albedo.
 const ALBEDO: f64 = 0.1;
@@ -31,6 +33,8 @@ pub struct Report {
     pub degree: f64,
     /// Least and largest of scalar radiance over I, less 1.
     pub scalar: (f64, f64),
+    /// Mean square of what a polarised solved table is off from these paths, as a share of I: I, and the mean of Q and U.
+    pub solved: [f64; 2],
 }
 
 impl Report {
@@ -39,12 +43,27 @@ impl Report {
     pub fn cost(&self) -> f64 {
         self.seconds[1] / self.seconds[0] * self.variance[1] / self.variance[0]
     }
+
+    /// Mean square of the relative error of all paths: I, and the mean of Q and U.
+    #[must_use]
+    pub fn noise(&self) -> [f64; 2] {
+        [self.variance[1], self.variance[2]].map(|variance| variance / (REPLICATES - 1) as f64)
+    }
 }
 
-/// Traces sequences of `points` paths (a power of two) from the ground, on the current thread; the sun is a parallel beam.
+/// The solved table of polarised light that is put beside paths.
+///
+/// # Errors
+/// As [`Solved::polarised`].
+pub fn solve<const L: usize>(medium: &Medium<L>) -> Result<Solved<L>, SolveError> {
+    Solved::polarised(medium, SHAPE, [ALBEDO; L], &Resolution::RENDER)
+}
+
+/// Traces sequences of `points` paths (a power of two) from the ground, on the current thread; the sun is a parallel beam. `solved` is
+/// of the same medium.
 #[must_use]
-pub fn measure<const L: usize>(medium: &Medium<L>, sun_zenith_deg: f64, points: u32) -> Report {
-    let shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
+pub fn measure<const L: usize>(medium: &Medium<L>, solved: &Solved<L>, sun_zenith_deg: f64, points: u32) -> Report {
+    let shape = SHAPE;
     let (columns, disc) = (Columns::new(medium, shape, Tolerance::RENDER), SunDisc::beam(towards(sun_zenith_deg, 0.0)));
     let problem = Problem {
         shape,
@@ -92,7 +111,8 @@ pub fn measure<const L: usize>(medium: &Medium<L>, sun_zenith_deg: f64, points: 
         for (sum, seconds) in report.seconds.iter_mut().zip(least) {
             *sum += share * seconds;
         }
-        for [scalar, i, q, u] in moments {
+        let table = solved.stokes(from, direction, frame, disc.direction(), false);
+        for ([scalar, i, q, u], table) in moments.into_iter().zip(table) {
             let share = share / L as f64;
             report.variance[0] += share * scalar.variance() / scalar.mean().powi(2);
             report.variance[1] += share * i.variance() / i.mean().powi(2);
@@ -100,6 +120,10 @@ pub fn measure<const L: usize>(medium: &Medium<L>, sun_zenith_deg: f64, points: 
             report.degree = report.degree.max(q.mean().hypot(u.mean()) / i.mean());
             let off = scalar.mean() / i.mean() - 1.0;
             report.scalar = (report.scalar.0.min(off), report.scalar.1.max(off));
+            let [i, q, u] =
+                [(table.i, i), (table.q, q), (table.u, u)].map(|(a, b)| ((a - b.mean()) / i.mean()).powi(2));
+            report.solved[0] += share * i;
+            report.solved[1] += share * 0.5 * (q + u);
         }
     }
     report

@@ -52,13 +52,15 @@ struct Pair {
 }
 
 impl Pair {
-    fn new(medium: &Medium<1>, shape: Shape, albedo: f64, single: bool) -> Result<Self, SolveError> {
+    fn new(medium: &Medium<1>, shape: Shape, albedo: f64, kind: (bool, bool)) -> Result<Self, SolveError> {
+        let (single, polarised) = kind;
         if single {
             return Ok(Self { solved: Solved::single(medium, shape, [albedo])?, coarse: None });
         }
         let fine = Resolution::FINE;
         let coarser = Resolution { degree: fine.degree, ..Resolution::RENDER };
-        let coarse = Solved::new(medium, shape, [albedo], &coarser)?;
+        let solve = if polarised { Solved::polarised } else { Solved::new };
+        let coarse = solve(medium, shape, [albedo], &coarser)?;
         let solved = coarse.again(&fine, None)?;
         Ok(Self { solved, coarse: Some(coarse) })
     }
@@ -94,6 +96,16 @@ enum Parameter {
     U,
 }
 
+impl Parameter {
+    fn of(self, Stokes { i, q, u }: Stokes) -> f64 {
+        match self {
+            Self::I => i,
+            Self::Q => q,
+            Self::U => u,
+        }
+    }
+}
+
 /// One estimate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sample {
@@ -121,24 +133,32 @@ impl Estimand {
     /// The value with its error, if the case is solved rather than sampled.
     pub(super) fn solution(&self) -> Option<(f64, f64)> {
         match (&self.tables, self.quantity) {
-            (Tables::Solved(pair), Quantity::Radiance(look, _)) => Some(self.solved(pair, look.direction)),
+            (Tables::Solved(pair), Quantity::Radiance(look, parameter)) => Some(self.solved(pair, look, parameter)),
             _ => None,
         }
     }
 
-    /// A radiance from solved tables, and its error: [`FINER`] of the distance from the coarser one, and [`UNSEEN`].
-    fn solved(&self, pair: &Pair, direction: DVec3) -> (f64, f64) {
+    /// A Stokes parameter from solved tables, and its error: [`FINER`] of the distance from the coarser one, and [`UNSEEN`] of the
+    /// radiance.
+    fn solved(&self, pair: &Pair, look: Look, parameter: Parameter) -> (f64, f64) {
+        let Look { direction, sideways } = look;
+        let sun = self.sun.direction();
         let look = |solved: &Solved<1>, single: bool| {
-            self.f0 * solved.radiance(self.place, direction, self.sun.direction(), single)[0]
+            let seen = if self.polarised {
+                solved.stokes(self.place, direction, Frame::new(direction, sideways), sun, single)[0]
+            } else {
+                Stokes { i: solved.radiance(self.place, direction, sun, single)[0], ..Stokes::default() }
+            };
+            (self.f0 * parameter.of(seen), self.f0 * seen.i)
         };
         match &pair.coarse {
             None => {
-                let value = look(&pair.solved, true);
-                (value, UNSEEN.0 * value)
+                let (value, radiance) = look(&pair.solved, true);
+                (value, UNSEEN.0 * radiance)
             }
             Some(coarse) => {
-                let value = look(&pair.solved, false);
-                (value, (FINER * (value - look(coarse, false))).hypot(UNSEEN.1 * value))
+                let (value, radiance) = look(&pair.solved, false);
+                (value, (FINER * (value - look(coarse, false).0)).hypot(UNSEEN.1 * radiance))
             }
         }
     }
@@ -160,13 +180,8 @@ impl Estimand {
         };
         let value = match self.quantity {
             Quantity::Radiance(look, parameter) => {
-                let Stokes { i, q, u } = self.stokes(look, sampler);
-                let value = match parameter {
-                    Parameter::I => i,
-                    Parameter::Q => q,
-                    Parameter::U => u,
-                };
-                return Sample { value, scale: i };
+                let seen = self.stokes(look, sampler);
+                return Sample { value: parameter.of(seen), scale: seen.i };
             }
             Quantity::Direct => self.direct(),
             Quantity::Diffuse => flux(self.place.up, sampler),
@@ -178,9 +193,10 @@ impl Estimand {
     }
 
     /// What is seen in a direction; scalar transfer knows only I.
-    fn stokes(&self, Look { direction, sideways }: Look, sampler: &mut Sampler) -> Stokes {
+    fn stokes(&self, look: Look, sampler: &mut Sampler) -> Stokes {
+        let Look { direction, sideways } = look;
         let (estimator, columns) = match &self.tables {
-            Tables::Solved(pair) => return Stokes { i: self.solved(pair, direction).0, ..Stokes::default() },
+            Tables::Solved(pair) => return Stokes { i: self.solved(pair, look, Parameter::I).0, ..Stokes::default() },
             Tables::Columns(estimator, columns) => (*estimator, columns),
         };
         let problem = Problem {
@@ -219,7 +235,7 @@ impl Shared {
 
     fn ground_key(case: &Case) -> Option<(String, u64, u64, String)> {
         // Whatever else a solution depends on.
-        let phase = format!("{:?} {}", case.phase, case.orders);
+        let phase = format!("{:?} {} {:?}", case.phase, case.orders, polarised(case));
         Self::key(case).map(|(profile, radius)| (profile, radius, case.albedo.to_bits(), phase))
     }
 
@@ -241,7 +257,9 @@ impl Shared {
             }
             let Ok((shape, medium)) = air(case, profiles) else { continue };
             if method == Method::Solved {
-                if let Ok(pair) = Pair::new(&medium, shape, case.albedo, case.orders == "1") {
+                if let Ok(pair) =
+                    Pair::new(&medium, shape, case.albedo, (case.orders == "1", polarised(case) == Ok(true)))
+                {
                     shared.solved.insert(ground, Arc::new(pair));
                 }
             } else {
@@ -279,6 +297,18 @@ fn air(case: &Case, profiles: &BTreeMap<String, Profile>) -> Result<(Shape, Medi
     }
 }
 
+/// Whether transfer is polarised.
+fn polarised(case: &Case) -> Result<bool, String> {
+    let stokes = case.quantity.starts_with("stokes_");
+    match case.polarization.as_str() {
+        "vector" => Ok(true),
+        "any" => Ok(stokes),
+        "scalar" if stokes => Err("scalar transfer has no Stokes parameters".into()),
+        "scalar" => Ok(false),
+        other => Err(format!("polarization {other:?} is neither scalar, vector nor any")),
+    }
+}
+
 /// Makes a case ready, or says in a phrase why it is refused.
 pub(super) fn prepare(
     case: &Case,
@@ -286,17 +316,7 @@ pub(super) fn prepare(
     shared: &Shared,
     method: Method,
 ) -> Result<Estimand, String> {
-    let stokes = case.quantity.starts_with("stokes_");
-    let polarised = match case.polarization.as_str() {
-        "vector" => true,
-        "any" => stokes,
-        "scalar" if stokes => return Err("scalar transfer has no Stokes parameters".into()),
-        "scalar" => false,
-        other => return Err(format!("polarization {other:?} is neither scalar, vector nor any")),
-    };
-    if polarised && method == Method::Solved {
-        return Err("solved tables carry no polarisation: take paths or the judge".into());
-    }
+    let polarised = polarised(case)?;
     let max_orders = match case.orders.as_str() {
         "all" => None,
         text => Some(

@@ -117,11 +117,12 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "DEG", help_heading = "Camera")]
     pub view_elevation: Option<f64>,
     /// Keep the polarisation of light: Stokes parameters, degree and angle in the EXR, and a second PNG of degree and angle
-    /// (NAME-polarisation.png). Needs --method paths or judge [default: off; on without a word]
+    /// (NAME-polarisation.png). Solved tables take what aerosol scatters again for unpolarised; --method paths does not
+    /// [default: off; on without a word]
     #[arg(long, num_args = 0..=1, default_missing_value = "on", require_equals = true, help_heading = "Camera")]
     pub polarisation: Option<Switch>,
     /// A polarising filter before the camera, its axis so many degrees from the horizontal of each pixel, anticlockwise as one
-    /// looks, -360 to 360. Needs --method paths or judge [default: none]
+    /// looks, -360 to 360 [default: none]
     #[arg(long, value_name = "ANGLE", help_heading = "Camera")]
     pub filter: Option<f64>,
     /// Altitude of the observer in km above the ground, 0 to 1000000 [default: 0.002]
@@ -699,15 +700,12 @@ mod tests {
         assert!(refusal("--shard 3/2").contains("1/N to N/N"));
         assert!(refusal("--block 3").contains("power of two"));
         assert!(refusal("--resume a.state scene.json").contains("cannot be used with"));
-        assert!(
-            refusal("--polarisation").contains("--method paths") && refusal("--filter 30").contains("--method paths")
-        );
-        assert!(refusal("--polarisation --filter 30 --method paths").contains("leave out"));
+        assert!(refusal("--polarisation --filter 30").contains("leave out"));
     }
 
     #[test]
     fn a_filter_and_polarisation_replace_each_other() {
-        let base = scene("--polarisation --method paths").expect("valid");
+        let base = scene("--polarisation").expect("valid");
         let over = |base: &Scene, flags: &str| {
             let words = ["airlight"].into_iter().chain(flags.split_whitespace());
             let scene = Program::try_parse_from(words).expect("flags").args.scene(base.clone()).expect("valid");
@@ -715,7 +713,7 @@ mod tests {
         };
         assert_eq!(over(&base, ""), (true, None));
         assert_eq!(over(&base, "--filter 30"), (false, Some(30.0)));
-        assert_eq!(over(&base, "--polarisation=off --method solved"), (false, None));
+        assert_eq!(over(&base, "--polarisation=off"), (false, None));
         let filtered = scene("--filter 30 --method judge").expect("valid");
         assert_eq!(over(&filtered, ""), (false, Some(30.0)));
         assert_eq!(over(&filtered, "--polarisation"), (true, None));

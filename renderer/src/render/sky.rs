@@ -229,6 +229,12 @@ impl Sky {
         if matches!(self.shows, Shows::Filtered(_)) { 0.5 } else { 1.0 }
     }
 
+    /// Whether light is followed with its polarisation.
+    #[must_use]
+    pub fn is_polarised(&self) -> bool {
+        !matches!(self.shows, Shows::Radiance)
+    }
+
     /// Whether radiances come from solved tables, without noise.
     #[must_use]
     pub fn is_solved(&self) -> bool {
@@ -254,7 +260,7 @@ impl Sky {
         errors.reduce(|a, b| Some(a?.max(b?))).flatten()
     }
 
-    /// Certificates of the solved tables, packet by packet; `None` if there are none.
+    /// Certificates of the solved tables, packet by packet; `None` if there are none, or of polarised light.
     pub(super) fn certificates(&self) -> Option<Vec<Box<dyn Certifies + '_>>> {
         self.carriers.iter().map(|(range, carrier)| carrier.certificate(self.place, range.len())).collect()
     }
@@ -471,7 +477,7 @@ impl Parts<'_> {
         let means = match (scene.method.estimator(), scene.method) {
             (Some(estimator), _) => Means::Estimated(estimator, Columns::new(&medium, shape, Tolerance::RENDER)),
             (None, Method::Solved) => {
-                let (view, sky) = ((self.place, self.sun_direction), (&medium, shape, albedo));
+                let (view, sky) = ((self.place, self.sun_direction), (&medium, shape, albedo, polarised));
                 let tables = Tables::within(scene.table_error, view, sky, self.kept)?;
                 let (error, seen) = seen(&tables, self.place, &sun, self.wanted)?;
                 Means::Solved { tables, error, seen }
@@ -504,7 +510,7 @@ fn seen<const L: usize>(
 /// the packet's range.
 trait Carrier: Debug + Send + Sync {
     fn radiance(&self, from: Place, direction: DVec3, sampler: &mut Sampler, factors: &mut [f64]);
-    /// Hands the Stokes parameters of each lane to `see`; none of solved tables, which know none.
+    /// Hands the Stokes parameters of each lane to `see`.
     fn stokes(
         &self,
         from: Place,
@@ -520,7 +526,7 @@ trait Carrier: Debug + Send + Sync {
     fn bytes(&self) -> usize;
     /// Turns to another observer and sun.
     fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError>;
-    /// A certificate of the solved table for its observer, of so many wavelengths.
+    /// A certificate of the solved table for its observer, of so many wavelengths; none of polarised light.
     fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>>;
 }
 
@@ -604,10 +610,27 @@ impl<const L: usize> Carrier for Lanes<L> {
         sampler: &mut Sampler,
         see: &mut dyn FnMut(usize, Stokes),
     ) {
-        if let Means::Estimated(estimator, columns) = &self.means {
-            let seen = transport::stokes(*estimator, &self.problem(columns), from, direction, frame, sampler);
-            seen.into_iter().take(self.count).enumerate().for_each(|(lane, seen)| see(lane, seen));
-        }
+        let seen = match &self.means {
+            Means::Estimated(estimator, columns) => {
+                transport::stokes(*estimator, &self.problem(columns), from, direction, frame, sampler)
+            }
+            Means::Solved { tables, seen, .. } => {
+                let mut sum = [Stokes::default(); L];
+                for sun in seen {
+                    for (sum, one) in sum.iter_mut().zip(sun.stokes(&tables.solved, direction, frame)) {
+                        *sum += one * (seen.len() as f64).recip();
+                    }
+                }
+                sum
+            }
+            // These know natural light alone, and scenes with polarisation refuse them.
+            Means::Cheap(cheap) => {
+                let seen =
+                    cheap.as_ref().map_or([0.0; L], |cheap| cheap.radiance(from, direction, self.sun.direction()));
+                seen.map(|i| Stokes { i, ..Stokes::default() })
+            }
+        };
+        seen.into_iter().take(self.count).enumerate().for_each(|(lane, seen)| see(lane, seen));
     }
 
     fn table_error(&self) -> Option<f64> {
@@ -631,6 +654,9 @@ impl<const L: usize> Carrier for Lanes<L> {
 
     fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>> {
         let Means::Solved { tables: Tables { solved, .. }, .. } = &self.means else { return None };
+        if solved.is_polarised() {
+            return None;
+        }
         let columns = Columns::new(&self.medium, self.shape, Tolerance::RENDER);
         let certificate = Certificate::new(solved, columns, from, self.sun.direction());
         Some(Box::new(certify::Packet { solved, certificate, count }))

@@ -130,9 +130,6 @@ impl Scene {
                 "what has passed a filter is polarised along its axis: leave out polarisation or filter".into(),
             ));
         }
-        if self.is_polarised() && self.method == Method::Solved {
-            return Err(SceneError::Refused("solved tables carry no polarisation: take --method paths".into()));
-        }
         Ok(())
     }
 
@@ -256,9 +253,7 @@ mod tests {
         assert!(refusal(|s| s.block = Some(48)).contains("power of two"));
         let large = |s: &mut Scene| (s.width, s.height) = (Some(16_384), Some(16_384));
         assert!(refusal(large).contains("GiB"));
-        assert!(refusal(|s| s.polarisation = true).contains("--method paths"));
-        assert!(refusal(|s| s.filter_deg = Some(0.0)).contains("--method paths"));
-        let both = |s: &mut Scene| (s.polarisation, s.filter_deg, s.method) = (true, Some(0.0), Method::Judge);
+        let both = |s: &mut Scene| (s.polarisation, s.filter_deg) = (true, Some(0.0));
         assert!(refusal(both).contains("leave out"));
         assert_eq!(refusal(|s| s.filter_deg = Some(361.0)), "filter is 361; -360 to 360 degrees is possible");
     }

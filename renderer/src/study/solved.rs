@@ -55,7 +55,7 @@ pub fn suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
         // Any error is small enough for the usual tables, none for the finest.
         for (k, (error, [below, stated])) in [(f64::INFINITY, USUAL), (0.0, FINEST)].into_iter().enumerate() {
             let high = (from, towards(90.0 - SUNS[0], 0.0));
-            let tables = Tables::within(error, high, (&medium, SHAPE, ALBEDO), None)?;
+            let tables = Tables::within(error, high, (&medium, SHAPE, ALBEDO, false), None)?;
             for (n, &elevation) in SUNS.iter().enumerate() {
                 let sun = towards(90.0 - elevation, 0.0);
                 let mut add = |panel, value| {

@@ -2,7 +2,7 @@
 //!
 //! A file holds `moment[altitude, sun_zenith, moment_index, lane]` and `irradiance[sun_zenith, lane]` in single precision, as they are in memory, so that
 //! what is read is what was solved. Its name has a hash of the atmosphere (densities, cross-sections, phase functions), the planet,
-//! the ground, the resolution and the program's version; a file of that name that holds something else is an error, not a table.
+//! the ground, whether light is polarised, the resolution and the program's version; a file of that name that holds something else is an error, not a table.
 
 use super::grid::Grid;
 use super::orders::Field;
@@ -28,8 +28,10 @@ impl Write for Hashed {
 /// A hash of all that a solution depends on: with its own resolution those of the solutions from which it was begun.
 pub(super) fn key<const L: usize>(optics: &Optics<L>, radius: f64, resolutions: &[Resolution]) -> String {
     let mut hashed = Hashed(DefaultHasher::new());
-    let inputs: [&dyn Debug; 7] =
-        [&METHOD, &env!("CARGO_PKG_VERSION"), &optics.medium, &optics.species, &optics.albedo, &radius, &resolutions];
+    let Optics { medium, species, albedo, moments, .. } = optics;
+    let polarised = moments.polarised();
+    let inputs: [&dyn Debug; 8] =
+        [&METHOD, &env!("CARGO_PKG_VERSION"), medium, species, albedo, &polarised, &radius, &resolutions];
     for input in inputs {
         // Hashing does not fail.
         let _ = write!(hashed, "{input:?};");

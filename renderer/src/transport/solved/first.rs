@@ -4,10 +4,11 @@ use super::Setup;
 use super::grid::nearest;
 use super::harmonics::legendre;
 use super::line::{Rule, Take, crossings, quadrature};
+use super::linear::Linear;
 use super::orders::{Gathered, LANES, Turns};
 use super::rays::Line;
 use crate::geometry::Place;
-use crate::vectors::add_product;
+use crate::vectors::{add_product, add_scaled};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_1_PI;
@@ -237,6 +238,10 @@ pub(super) fn scatter<const L: usize, const AZIMUTHS: usize>(
         }
         light.arrive(setup, line, &turns, sunlight, scattering);
         sum.add::<AZIMUTHS>(line, &setup.optics.moments, &light.radiance);
+        if setup.optics.moments.polarised() {
+            light.polarise(setup, line, &turns);
+            sum.add_linear::<AZIMUTHS>(line, &light.linear);
+        }
     }
     (sum.moments, sum.ground)
 }
@@ -291,6 +296,8 @@ struct Light<const L: usize> {
     /// How far above the horizon the suns of each batch were at the crossing before.
     above: Vec<[f32; LANES]>,
     radiance: Vec<[f32; L]>,
+    /// Q and U, of polarised light.
+    linear: Vec<Linear<L>>,
 }
 
 impl<const L: usize> Light<L> {
@@ -299,6 +306,7 @@ impl<const L: usize> Light<L> {
             sums: vec![[[0.0; L]; LANES]; batches * species],
             above: vec![[0.0; LANES]; batches],
             radiance: vec![[0.0; L]; batches * LANES],
+            linear: vec![[[0.0; L]; 2]; batches * LANES],
         }
     }
 
@@ -365,6 +373,25 @@ impl<const L: usize> Light<L> {
                         }
                     }
                     _ => {}
+                }
+            }
+        }
+    }
+
+    /// Makes Q and U of what molecules scatter.
+    #[inline(always)]
+    fn polarise(&mut self, setup: &Setup<'_, L>, line: &Line<L>, turns: &Turns) {
+        let species = &setup.optics.species;
+        let states = self.sums.chunks_exact(species.len().max(1)).zip(self.linear.as_chunks_mut::<LANES>().0);
+        for (batch, (sums, linear)) in turns.batches.iter().zip(states) {
+            let shares = batch.sunlight(line.zenith as f32);
+            for (i, (linear, shares)) in linear.iter_mut().zip(shares).enumerate() {
+                *linear = [[0.0; L]; 2];
+                for (one, sums) in species.iter().zip(sums).filter(|(one, _)| one.is_molecular()) {
+                    let dipoles: [f32; L] = std::array::from_fn(|j| one.coefficients[2][j] as f32 * sums[i][j]);
+                    for (row, share) in linear.iter_mut().zip(shares) {
+                        add_scaled(row, share, &dipoles);
+                    }
                 }
             }
         }

@@ -60,7 +60,7 @@ pub(super) struct Between<const N: usize> {
 
 impl Suns {
     /// `count` angles from 0 to where it is dark at the top of an atmosphere of scale height about a twelfth of `top`.
-    fn new(count: usize, radius: f64, top: f64) -> Self {
+    pub(super) fn new(count: usize, radius: f64, top: f64) -> Self {
         // The sun sets there for the air that scatters most, and for the highest.
         let low = (radius / (radius + 0.1 * top)).acos();
         let (centre, width) = (FRAC_PI_2 + low, 2.6 * low);

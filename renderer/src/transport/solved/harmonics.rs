@@ -17,18 +17,24 @@ pub(super) struct Moments {
     pairs: Vec<(usize, usize)>,
     /// Which of them follow each other with the same m.
     runs: Vec<(usize, Range<usize>)>,
+    /// Which source each goes with: its degree, but see [`Moments::apart`].
+    sources: Vec<usize>,
     degree: usize,
+    polarised: bool,
     /// Of m and of l.
     steps: Vec<Step>,
+    /// Moments that have the function of an earlier one.
+    twins: Vec<(usize, usize)>,
 }
 
 impl Moments {
-    /// All degrees up to `degree`, but for 1 where 2 is the last: molecules do without.
-    pub(super) fn new(degree: usize) -> Self {
+    /// All degrees up to `degree`, but for 1 where 2 is the last: molecules do without. Of polarised light the first are those of vector
+    /// harmonics, and other scatterers have their own of degree 2 beside them.
+    pub(super) fn new(degree: usize, polarised: bool) -> Self {
         let mut pairs = vec![(0, 0), (2, 0), (2, 1), (2, 2)];
         if degree > 2 {
             let all = (0..=degree).flat_map(|m| (m..=degree).map(move |l| (l, m)));
-            pairs.extend(all.filter(|&(l, _)| l == 1 || l > 2));
+            pairs.extend(all.filter(|&(l, _)| l == 1 || l > 2 || (l == 2 && polarised)));
         }
         let degree = degree.max(2);
         let mut runs: Vec<(usize, Range<usize>)> = Vec::new();
@@ -42,7 +48,31 @@ impl Moments {
             if l < m { Step::default() } else { Step::to(l, m, pairs.iter().position(|pair| *pair == (l, m))) }
         };
         let steps = (0..=degree).flat_map(|m| (0..=degree).map(move |l| (m, l))).map(|(m, l)| step(m, l)).collect();
-        Self { pairs, runs, degree, steps }
+        let twin = |i: usize| Some((pairs[..RAYLEIGH].iter().position(|pair| *pair == pairs[i])?, i));
+        let twins: Vec<_> = (RAYLEIGH..pairs.len()).filter_map(twin).collect();
+        let source = |i: usize| if twins.iter().any(|(_, twin)| *twin == i) { degree + 1 } else { pairs[i].0 };
+        let sources = (0..pairs.len()).map(source).collect();
+        Self { pairs, runs, sources, degree, polarised, steps, twins }
+    }
+
+    /// Whether they are of polarised light.
+    pub(super) fn polarised(&self) -> bool {
+        self.polarised
+    }
+
+    /// Which source each goes with: those of the degrees, and that which is [`Moments::apart`].
+    pub(super) fn sources(&self) -> &[usize] {
+        &self.sources
+    }
+
+    /// How many sources there are.
+    pub(super) fn width(&self) -> usize {
+        self.apart().unwrap_or(self.degree) + 1
+    }
+
+    /// The source of degree 2 of all scatterers but molecules, if they have their own.
+    pub(super) fn apart(&self) -> Option<usize> {
+        (!self.twins.is_empty()).then_some(self.degree + 1)
     }
 
     /// How many there are.
@@ -58,6 +88,13 @@ impl Moments {
     /// Degree and order of each.
     pub(super) fn pairs(&self) -> &[(usize, usize)] {
         &self.pairs
+    }
+
+    /// Which of these is moment number `i` of others, if it is there.
+    pub(super) fn position(&self, other: &Self, i: usize) -> Option<usize> {
+        let found =
+            self.pairs[RAYLEIGH..].iter().position(|pair| *pair == other.pairs[i]).map(|found| RAYLEIGH + found);
+        if i < RAYLEIGH { Some(i) } else { found }
     }
 
     /// How many come before the first of an order m of so many or more: all with fewer.
@@ -91,6 +128,9 @@ impl Moments {
                     values[place] = value;
                 }
             }
+        }
+        for &(first, twin) in &self.twins {
+            values[twin] = values[first];
         }
     }
 }
@@ -138,7 +178,7 @@ mod tests {
 
     #[test]
     fn the_addition_theorem_holds() {
-        let moments = Moments::new(12);
+        let moments = Moments::new(12, false);
         let (mut a, mut b) = (Vec::new(), Vec::new());
         for (mu, nu, phi) in [(0.3, -0.9, 0.7_f64), (1.0, 0.2, 2.0), (-0.5, -0.5, 3.1), (0.0, 0.99, 1.2)] {
             moments.at(mu, &mut a);

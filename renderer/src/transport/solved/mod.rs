@@ -11,6 +11,8 @@
 //! holds them at some altitudes and suns, together with the irradiance of the ground; the field follows order after order:
 //! the moments of one are integrated along lines in all directions, and give those of the next.
 //!
+//! Of polarised light molecules need four numbers too, with vector harmonics (linear.rs).
+//!
 //! What is seen is integrated along the line of sight: sunlight scattered once with the phase functions themselves, and the
 //! table's sources. Radiance is never interpolated.
 
@@ -22,6 +24,7 @@ mod grid;
 mod guide;
 mod harmonics;
 mod line;
+mod linear;
 mod mix;
 mod orders;
 mod panorama;
@@ -103,10 +106,11 @@ struct Optics<const L: usize> {
 /// are left out.
 const FAINT: f64 = 1e-3;
 
-/// How many moments count at a crossing, and their highest degree.
+/// How many moments count at a crossing, their highest degree, and how many sources they go with.
 struct Reach {
     count: usize,
     degree: usize,
+    sources: usize,
 }
 
 impl<const L: usize> Optics<L> {
@@ -116,15 +120,24 @@ impl<const L: usize> Optics<L> {
         let largest = weights.iter().flatten().fold(0.0_f64, |most, w| most.max(w.abs()));
         let counts = |weights: &[f64; L]| weights.iter().any(|w| w.abs() > FAINT * largest);
         let peaked = self.species.iter().zip(weights).any(|(one, weights)| !one.is_molecular() && counts(weights));
-        let (count, degree) = if peaked { (self.moments.count(), self.moments.degree()) } else { (RAYLEIGH, 2) };
-        (largest > 0.0).then_some(Reach { count, degree })
+        let moments = &self.moments;
+        let reach = if peaked {
+            Reach { count: moments.count(), degree: moments.degree(), sources: moments.width() }
+        } else {
+            Reach { count: RAYLEIGH, degree: 2, sources: 3 }
+        };
+        (largest > 0.0).then_some(reach)
     }
 
-    /// Adds to each source, of the degree l, the sum over the species of b_l times their weights.
+    /// Adds to each source, of the degree l, the sum over the species of b_l times their weights; b_2 of those that are no molecules may
+    /// have a source apart.
     #[inline(always)]
     fn add_sources(&self, weights: &[[f64; L]], sources: &mut [[f32; L]]) {
         for (one, weights) in self.species.iter().zip(weights) {
-            for (source, coefficients) in sources.iter_mut().zip(&one.coefficients) {
+            let apart = self.moments.apart().filter(|_| !one.is_molecular());
+            for (l, coefficients) in one.coefficients.iter().enumerate() {
+                let place = if l == 2 { apart.unwrap_or(l) } else { l };
+                let Some(source) = sources.get_mut(place) else { continue };
                 for j in 0..L {
                     source[j] += (weights[j] * coefficients[j]) as f32;
                 }
@@ -171,7 +184,7 @@ pub struct Tables<const L: usize> {
 const HIDDEN: f64 = 3e-3;
 
 impl<const L: usize> Tables<L> {
-    /// Solves on finer grids until the table states at most this error for an observer and a sun, or there is none finer. `kept` as
+    /// Solves, of polarised light or of radiance alone, on finer grids until the table states at most this error for an observer and a sun, or there is none finer. `kept` as
     /// in [`Solved::kept`].
     ///
     /// # Errors
@@ -179,17 +192,18 @@ impl<const L: usize> Tables<L> {
     pub fn within(
         error: f64,
         (from, sun): (Place, DVec3),
-        (medium, shape, albedo): (&Medium<L>, Shape, [f64; L]),
+        (medium, shape, albedo, polarised): (&Medium<L>, Shape, [f64; L], bool),
         kept: Option<&Path>,
     ) -> Result<Self, SolveError> {
-        let coarser = Solved::kept(medium, shape, albedo, &Resolution::COARSE, kept)?;
+        let coarse = Resolution::COARSE;
+        let coarser = Solved::begun((medium, shape, albedo, polarised), &coarse, (kept, None))?;
         let solved = coarser.again(&Resolution::RENDER, kept)?;
         let hidden = if solved.optics.moments.degree() > 2 { HIDDEN } else { 0.0 };
         let usual = Self { solved, coarser, hidden };
         if usual.error(from, sun) <= error {
             return Ok(usual);
         }
-        let solved = Solved::begun(medium, shape, albedo, &Resolution::FINE, (kept, Some(&usual.solved)))?;
+        let solved = Solved::begun((medium, shape, albedo, polarised), &Resolution::FINE, (kept, Some(&usual.solved)))?;
         Ok(Self { solved, coarser: usual.solved, hidden: 0.0 })
     }
 
@@ -226,6 +240,20 @@ impl<const L: usize> Solved<L> {
         Self::kept(medium, shape, albedo, resolution, None)
     }
 
+    /// As [`Solved::new`], of polarised light: molecules scatter and make Stokes parameters, other scatterers radiance alone (what they
+    /// make of sunlight itself is polarised by their matrices).
+    ///
+    /// # Errors
+    /// As [`Solved::new`].
+    pub fn polarised(
+        medium: &Medium<L>,
+        shape: Shape,
+        albedo: [f64; L],
+        resolution: &Resolution,
+    ) -> Result<Self, SolveError> {
+        Self::begun((medium, shape, albedo, true), resolution, (None, None))
+    }
+
     /// As [`Solved::new`], but the table is taken from the folder `kept` if it is there, by a checksum of all that it depends on, and
     /// written to it if it is not.
     ///
@@ -238,14 +266,12 @@ impl<const L: usize> Solved<L> {
         resolution: &Resolution,
         kept: Option<&Path>,
     ) -> Result<Self, SolveError> {
-        Self::begun(medium, shape, albedo, resolution, (kept, None))
+        Self::begun((medium, shape, albedo, false), resolution, (kept, None))
     }
 
-    /// As [`Solved::kept`], begun from a coarser solution.
+    /// As [`Solved::kept`], begun from a coarser solution, of polarised light or of radiance alone.
     fn begun(
-        medium: &Medium<L>,
-        shape: Shape,
-        albedo: [f64; L],
+        (medium, shape, albedo, polarised): (&Medium<L>, Shape, [f64; L], bool),
         resolution: &Resolution,
         (kept, start): (Option<&Path>, Option<&Self>),
     ) -> Result<Self, SolveError> {
@@ -257,7 +283,7 @@ impl<const L: usize> Solved<L> {
         let (species, medium) = species::scaled(medium, degree)?;
         let columns = Columns::new(&medium, shape, Tolerance::SOLVE);
         let aureole = Aureole::new(&species, &medium, shape)?;
-        let optics = Optics { moments: Moments::new(degree), species, medium, columns, aureole, albedo };
+        let optics = Optics { moments: Moments::new(degree, polarised), species, medium, columns, aureole, albedo };
         Self::with(Arc::new(optics), radius_m, resolution, (kept, start))
     }
 
@@ -270,7 +296,7 @@ impl<const L: usize> Solved<L> {
         let (medium, columns) = (medium.clone(), Columns::new(medium, shape, Tolerance::RENDER));
         let grid = Grid::new(&medium, radius_m, &Resolution::FINE);
         let species = species::whole(&medium);
-        let (moments, aureole) = (Moments::new(2), Aureole::none());
+        let (moments, aureole) = (Moments::new(2, false), Aureole::none());
         let optics = Optics { moments, species, medium, columns, aureole, albedo };
         let field = Field { moments: Vec::new(), ground: Vec::new() };
         let resolutions = vec![Resolution::FINE];
@@ -344,6 +370,12 @@ impl<const L: usize> Solved<L> {
     #[must_use]
     pub fn convergence(&self) -> (usize, f64) {
         (self.orders, self.residual)
+    }
+
+    /// Whether it is of polarised light.
+    #[must_use]
+    pub fn is_polarised(&self) -> bool {
+        self.optics.moments.polarised()
     }
 
     /// Bytes of the moments.

@@ -35,8 +35,7 @@ impl<const L: usize> Field<L> {
         let measure = |h: f64| (h / own.levels[own.levels.len() - 1]).max(0.0).powf(0.4);
         let places: Vec<_> =
             own.levels.iter().enumerate().map(|(level, h)| Crossing { level, s: measure(*h) }).collect();
-        let columns: Vec<Option<usize>> =
-            wanted.pairs().iter().map(|pair| moments.pairs().iter().position(|own| own == pair)).collect();
+        let columns: Vec<Option<usize>> = (0..wanted.count()).map(|i| moments.position(wanted, i)).collect();
         let (count, stride) = (own.suns.count(), moments.count());
         let at_level = |h: &f64| {
             let interval = own.levels.partition_point(|level| level <= h).clamp(1, own.levels.len() - 1) - 1;
@@ -98,6 +97,7 @@ impl<const L: usize> Around<'_, L> {
         // Of each line, sun and azimuth.
         let places = LANES * self.suns.batches::<AZIMUTHS>();
         let mut radiance = vec![[0.0; L]; self.lines.lines.len() * places];
+        let mut linear = vec![[[0.0; L]; 2]; if self.moments.polarised() { radiance.len() } else { 0 }];
         let mut factors = Vec::new();
         let (mut few, mut many) = (vec![[[0.0; L]; 3]; suns], vec![[[0.0; L]; AZIMUTHS]; suns]);
         for node in &self.lines.nodes {
@@ -109,6 +109,9 @@ impl<const L: usize> Around<'_, L> {
                 self.contract(node, field, &mut factors, &mut many);
                 self.gather(&turns[node.line], node, &many, radiance);
             }
+            if let Some(linear) = linear.get_mut(node.line * places..(node.line + 1) * places) {
+                self.polarise(&turns[node.line], node, field, linear);
+            }
         }
         let mut sum = Gathered::new(self.moments.count(), suns);
         for ((line, turns), radiance) in self.lines.lines.iter().zip(&turns).zip(radiance.chunks_exact_mut(places)) {
@@ -116,6 +119,9 @@ impl<const L: usize> Around<'_, L> {
                 self.reflect(turns, foot, field, radiance);
             }
             sum.add::<AZIMUTHS>(line, self.moments, radiance);
+        }
+        for (line, linear) in self.lines.lines.iter().zip(linear.chunks_exact(places)) {
+            sum.add_linear::<AZIMUTHS>(line, linear);
         }
         (sum.moments, sum.ground)
     }
@@ -132,8 +138,8 @@ impl<const L: usize> Around<'_, L> {
     ) {
         let (count, all) = (node.harmonics.len(), self.moments.count());
         factors.clear();
-        for (&(l, _), harmonic) in self.moments.pairs().iter().zip(&node.harmonics) {
-            factors.push(node.sources[l].map(|source| source * harmonic));
+        for (&source, harmonic) in self.moments.sources().iter().zip(&node.harmonics) {
+            factors.push(node.sources[source].map(|source| source * harmonic));
         }
         let level = &field.moments[node.level * self.suns.count() * all..][..self.suns.count() * all];
         rows.fill([[0.0; L]; ORDERS]);
@@ -170,18 +176,13 @@ impl<const L: usize> Around<'_, L> {
         rows: &[[[f32; L]; ORDERS]],
         radiance: &mut [[f32; L]],
     ) {
-        let node_sine = ((1.0 - node.zenith) * (1.0 + node.zenith)).max(0.0).sqrt();
         let batches = turns.batches.iter().zip(radiance.as_chunks_mut::<LANES>().0);
         for (batch, radiance) in batches {
             let there = batch.there(node.frame);
             let between = self.suns.locate(&there);
             // Cosines of m times the azimuth there.
             let mut cosines = [[1.0_f32; LANES]; ORDERS];
-            for i in 0..LANES {
-                let across = node_sine * ((1.0 - there[i]) * (1.0 + there[i])).max(0.0).sqrt();
-                let along = batch.towards[i] - node.zenith * there[i];
-                cosines[1][i] = if across > 1e-6 { (along / across).clamp(-1.0, 1.0) } else { 1.0 };
-            }
+            cosines[1] = batch.cosines(node.zenith, &there);
             for m in 2..ORDERS {
                 for i in 0..LANES {
                     cosines[m][i] = 2.0 * cosines[1][i] * cosines[m - 1][i] - cosines[m - 2][i];
@@ -232,7 +233,7 @@ pub(super) struct Turns {
 /// Some suns and azimuths.
 pub(super) struct Batch {
     /// Cosine of the sun's zenith angle at the beginning, and of the angle between line and sun.
-    cosine: [f32; LANES],
+    pub(super) cosine: [f32; LANES],
     pub(super) towards: [f32; LANES],
 }
 
@@ -273,6 +274,19 @@ impl Batch {
             there[i] = frame[0] * self.cosine[i] + frame[1] * self.towards[i];
         }
         there
+    }
+
+    /// Cosines of the azimuth of a line with the cosine `zenith`, from the sun's, at such a place.
+    #[inline(always)]
+    pub(super) fn cosines(&self, zenith: f32, there: &[f32; LANES]) -> [f32; LANES] {
+        let sine = ((1.0 - zenith) * (1.0 + zenith)).max(0.0).sqrt();
+        let mut cosines = [1.0; LANES];
+        for i in 0..LANES {
+            let across = sine * ((1.0 - there[i]) * (1.0 + there[i])).max(0.0).sqrt();
+            let along = self.towards[i] - zenith * there[i];
+            cosines[i] = if across > 1e-6 { (along / across).clamp(-1.0, 1.0) } else { 1.0 };
+        }
+        cosines
     }
 }
 

@@ -11,9 +11,10 @@
 //! direction is looked at by itself.
 
 use super::line::MOST_SPECIES;
-use super::view::{Look, Seen};
+use super::view::{Look, See, Seen};
 use super::{Optics, Solved};
 use crate::geometry::Place;
+use crate::polarisation::{Frame, Stokes};
 use crate::vectors::vectorised;
 use glam::DVec3;
 use pulp::NullaryFnOnce;
@@ -73,6 +74,7 @@ struct Nodes<const L: usize> {
     /// [ring][azimuth][`rows`]: what is seen.
     values: Vec<[f32; L]>,
     rows: usize,
+    species: usize,
 }
 
 impl<const L: usize> Panorama<L> {
@@ -104,17 +106,37 @@ impl<const L: usize> Panorama<L> {
     /// Radiance per unit solar irradiance (sr^-1) out of the unit `direction`, as [`Solved::radiance`] of all light.
     #[must_use]
     pub fn radiance(&self, solved: &Solved<L>, direction: DVec3) -> [f64; L] {
-        let zenith = self.zenith(direction);
-        let part = self.parts.iter().find(|part| zenith <= part.last);
-        let Some((part, nodes)) = part.and_then(|part| Some((part, part.nodes.as_ref()?))) else {
-            return solved.radiance(self.from, direction, self.sun, false);
+        match self.place(direction) {
+            Some((nodes, at, _)) => vectorised(Glance { solved, nodes, at, towards: direction.dot(self.sun) }),
+            None => solved.radiance(self.from, direction, self.sun, false),
+        }
+    }
+
+    /// Stokes parameters in `frame`, one of the unit `direction`, as [`Solved::stokes`] of all light.
+    #[must_use]
+    pub fn stokes(&self, solved: &Solved<L>, direction: DVec3, frame: Frame) -> [Stokes; L] {
+        // A vertical line has no azimuth.
+        let place = self.place(direction).filter(|_| self.from.up.cross(direction).length() > OFF);
+        let Some((nodes, at, right)) = place else {
+            return solved.stokes(self.from, direction, frame, self.sun, false);
         };
+        let mut seen = vectorised(Interpolation(nodes, at));
+        if right {
+            seen.linear[1] = seen.linear[1].map(|u| -u);
+        }
+        solved.show(&seen, (self.from, direction, frame), self.sun, false)
+    }
+
+    /// Where a direction is among nodes: shares of the way between rings and from the sun's azimuth to its opposite, and whether it lies
+    /// to the right of the sun, where U has the other sign.
+    fn place(&self, direction: DVec3) -> Option<(&Nodes<L>, [f64; 2], bool)> {
+        let zenith = self.zenith(direction);
+        let part = self.parts.iter().find(|part| zenith <= part.last)?;
         let (a, b) = part.ends;
         let share = ((part.between.share(zenith) - a) / (b - a)).clamp(0.0, 1.0);
         let level = direction - self.from.up * direction.dot(self.from.up);
         let (x, y) = (level.dot(self.ahead), level.dot(self.from.up.cross(self.ahead)));
-        let at = [share, y.abs().atan2(x) / PI];
-        vectorised(Glance { solved, nodes, at, towards: direction.dot(self.sun) })
+        Some((part.nodes.as_ref()?, [share, y.abs().atan2(x) / PI], y < 0.0))
     }
 
     /// How many looks it holds.
@@ -242,14 +264,18 @@ impl<const L: usize> Survey<'_, L> {
 
     fn nodes(&self, azimuths: usize, rings: &[Vec<Looked<L>>]) -> Nodes<L> {
         let species = self.solved.optics.species.len();
+        let polarised = self.solved.is_polarised();
         let single = |row: &[f64; L]| row.map(|value| value as f32);
         let of = |(_, seen): &Looked<L>| {
             let mut values = vec![single(&seen.rest), single(&seen.peaks)];
             values.extend(seen.once[..species].iter().map(single));
+            if polarised {
+                values.extend(seen.linear.iter().map(single));
+            }
             values
         };
         let values = rings.iter().flatten().flat_map(of).collect();
-        Nodes { rings: rings.len() - 1, azimuths, values, rows: 2 + species }
+        Nodes { rings: rings.len() - 1, azimuths, values, rows: if polarised { 4 } else { 2 } + species, species }
     }
 
     /// Whether nodes show what is seen.
@@ -257,7 +283,14 @@ impl<const L: usize> Survey<'_, L> {
         let towards = direction.dot(self.all.sun);
         let found = vectorised(Glance { solved: self.solved, nodes, at, towards });
         let right = self.solved.shade(seen, towards, false);
-        found.iter().zip(right).all(|(found, right)| (found - right).abs() <= self.error * right.abs())
+        let near = |found: &f64, seen: f64, radiance: f64| (found - seen).abs() <= self.error * radiance.abs();
+        let good = found.iter().zip(right).all(|(found, right)| near(found, right, right));
+        if !good || !self.solved.is_polarised() {
+            return good;
+        }
+        let shown = vectorised(Interpolation(nodes, at));
+        let rows = shown.linear.iter().zip(&seen.linear);
+        rows.flat_map(|(shown, seen)| shown.iter().zip(seen).zip(right)).all(|((a, b), right)| near(a, *b, right))
     }
 }
 
@@ -314,29 +347,18 @@ fn inside(intervals: usize, share: f64) -> [(usize, f64); NODES] {
     std::array::from_fn(|k| (first + k, weights[k]))
 }
 
-/// As [`inside`], where all goes on mirrored at both ends.
+/// As [`inside`], where all goes on mirrored at both ends, also of what changes sign there.
 #[inline(always)]
-fn mirrored(intervals: usize, share: f64) -> [(usize, f64); NODES] {
+fn mirrored(intervals: usize, share: f64) -> [(usize, f64, f64); NODES] {
     let place = share * intervals as f64;
     let first = place.floor() as i64 - (NODES as i64 / 2 - 1);
     let weights = weights(place - first as f64);
     let last = intervals as i64;
     std::array::from_fn(|k| {
         let at = (first + k as i64).abs();
-        ((if at > last { 2 * last - at } else { at }) as usize, weights[k])
+        let odd = if first + k as i64 != at || at > last { -weights[k] } else { weights[k] };
+        ((if at > last { 2 * last - at } else { at }) as usize, weights[k], odd)
     })
-}
-
-/// A look with what it sees.
-struct See<'a, const L: usize>(Look<'a, L>);
-
-impl<const L: usize> NullaryFnOnce for See<'_, L> {
-    type Output = Seen<L>;
-
-    #[inline(always)]
-    fn call(self) -> Seen<L> {
-        self.0.solved.look(&self.0)
-    }
 }
 
 /// What nodes say of a direction.
@@ -352,14 +374,35 @@ impl<const L: usize> NullaryFnOnce for Glance<'_, L> {
 
     #[inline(always)]
     fn call(self) -> [f64; L] {
-        let Self { solved, nodes, at: [ring, azimuth], towards } = self;
+        self.solved.shade(&self.nodes.seen(self.at), self.towards, false)
+    }
+}
+
+/// What nodes say of a direction, before the phase functions.
+struct Interpolation<'a, const L: usize>(&'a Nodes<L>, [f64; 2]);
+
+impl<const L: usize> NullaryFnOnce for Interpolation<'_, L> {
+    type Output = Seen<L>;
+
+    #[inline(always)]
+    fn call(self) -> Seen<L> {
+        self.0.seen(self.1)
+    }
+}
+
+impl<const L: usize> Nodes<L> {
+    #[inline(always)]
+    fn seen(&self, [ring, azimuth]: [f64; 2]) -> Seen<L> {
+        let nodes = self;
         let (along, across) = (inside(nodes.rings, ring), mirrored(nodes.azimuths, azimuth));
-        let mut values = [[0.0_f32; L]; MOST_SPECIES + 2];
+        let mut values = [[0.0_f32; L]; MOST_SPECIES + 4];
+        let last = 3 + nodes.species;
         for (row, value) in values.iter_mut().enumerate().take(nodes.rows) {
             let mut sum = [0.0; L];
             for (ring, a) in along {
-                for (azimuth, b) in across {
-                    let weight = (a * b) as f32;
+                for (azimuth, b, odd) in across {
+                    // The last row is U.
+                    let weight = (a * if row == last { odd } else { b }) as f32;
                     let seen = &nodes.values[(ring * (nodes.azimuths + 1) + azimuth) * nodes.rows + row];
                     for j in 0..L {
                         sum[j] += weight * seen[j];
@@ -368,7 +411,9 @@ impl<const L: usize> NullaryFnOnce for Glance<'_, L> {
             }
             *value = sum;
         }
-        let [rest, peaks, once @ ..] = values.map(|row| row.map(f64::from));
-        solved.shade(&Seen { rest, once, peaks }, towards, false)
+        let [rest, peaks, others @ ..] = values.map(|row| row.map(f64::from));
+        let mut once = [[0.0; L]; MOST_SPECIES];
+        once[..nodes.species].copy_from_slice(&others[..nodes.species]);
+        Seen { rest, peaks, once, linear: [others[nodes.species], others[nodes.species + 1]] }
     }
 }

@@ -73,7 +73,7 @@ fn line<const L: usize>(
     let Some(chord) = setup.optics.columns.chord(Place::above(grid.levels[level]), direction) else { return line };
     let (from, to) = chord.ends();
     let places = crossings(&chord, &grid.levels, from);
-    let width = setup.optics.moments.degree() + 1;
+    let width = setup.optics.moments.width();
     // Weights of each node in turn, by species.
     let species = setup.optics.species.len();
     let mut weights = vec![[0.0; L]; species * places.len()];

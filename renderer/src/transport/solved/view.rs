@@ -4,10 +4,12 @@ use super::aureole::Through;
 use super::grid::Between;
 use super::harmonics::MOST_DEGREE;
 use super::line::{Crossing, MOST_SPECIES, Rule, Spread, Stencil, Take, crossings, quadrature};
+use super::linear::horizontal;
 use super::{Optics, Solved};
 use crate::atmosphere::{Chord, Columns};
 use crate::geometry::Place;
 use crate::light::SunDisc;
+use crate::polarisation::{Analyser, Frame, Natural, Stokes};
 use crate::vectors::{exp_minus, vectorised};
 use glam::DVec3;
 use pulp::NullaryFnOnce;
@@ -32,6 +34,43 @@ impl<const L: usize> Solved<L> {
         sunlight: &Columns<L>,
     ) -> [f64; L] {
         vectorised(Look { solved: self, from, direction, sun, single: true, sunlight })
+    }
+
+    /// As [`Solved::radiance`], its Stokes parameters in `frame`, one of `direction`. A table that was solved without polarisation knows Q
+    /// and U of sunlight scattered once alone; phase functions without a matrix count as depolarising.
+    #[must_use]
+    pub fn stokes(&self, from: Place, direction: DVec3, frame: Frame, sun: DVec3, single: bool) -> [Stokes; L] {
+        let sunlight = &self.optics.columns;
+        let seen = vectorised(See(Look { solved: self, from, direction, sun, single, sunlight }));
+        self.show(&seen, (from, direction, frame), sun, single)
+    }
+
+    /// Stokes parameters in a frame of what is seen in a direction.
+    pub(super) fn show(
+        &self,
+        seen: &Seen<L>,
+        (from, direction, frame): (Place, DVec3, Frame),
+        sun: DVec3,
+        single: bool,
+    ) -> [Stokes; L] {
+        let towards = direction.dot(sun);
+        let whole = self.shade(seen, towards, single);
+        // Light scattered once keeps the polarisation of its matrix, also in the peak that the table takes for straight on.
+        let mut once = [0.0; L];
+        for (one, light) in self.optics.species.iter().zip(&seen.once) {
+            let matrix = one.phase.natural(towards);
+            for j in 0..L {
+                once[j] += matrix[j].b1 * one.whole[j] * light[j];
+            }
+        }
+        let level = Frame::new(direction, horizontal(from.up, direction));
+        let (plane, turn) = (frame.of_scattering(direction, sun).0, level.turn_to(frame, direction));
+        std::array::from_fn(|j| {
+            let [q, u] = seen.linear.map(|row| row[j]);
+            let mut sum = Stokes { i: 0.0, q, u }.turned(turn);
+            sum += Analyser::OBSERVER.once_scattered(plane, Natural { a1: whole[j], b1: once[j] }, 1.0);
+            sum
+        })
     }
 
     /// Suns, as parallel beams, whose mean stands for the disc. Where it is low its upper and lower parts lie differently deep in
@@ -117,6 +156,9 @@ impl<const L: usize> Solved<L> {
             let mut harmonics = Vec::with_capacity(self.optics.moments.count());
             for (place, weights) in places.iter().zip(weights.chunks_exact(species.len().max(1))) {
                 sight.add_sources(place, weights, towards, &mut harmonics, &mut seen.rest);
+                if self.optics.moments.polarised() {
+                    sight.add_linear(place, weights, &mut seen.linear);
+                }
             }
         }
         if chord.ends_on_ground() {
@@ -171,8 +213,8 @@ impl<const L: usize> Solved<L> {
         let across = ((1.0 - zenith) * (1.0 + zenith) * (1.0 - there) * (1.0 + there)).max(0.0).sqrt();
         let turn = if across > 1e-9 { ((towards - zenith * there) / across).clamp(-1.0, 1.0) } else { 1.0 };
         self.optics.moments.at(zenith, harmonics);
-        let mut sources = [[0.0_f32; L]; MOST_DEGREE + 1];
-        self.optics.add_sources(weights, &mut sources[..=reach.degree]);
+        let mut sources = [[0.0_f32; L]; MOST_DEGREE + 2];
+        self.optics.add_sources(weights, &mut sources[..reach.sources]);
         let mut cosines = [1.0; MOST_DEGREE + 1];
         cosines[1] = turn;
         for m in 2..=reach.degree {
@@ -185,10 +227,11 @@ impl<const L: usize> Solved<L> {
             let rows = &self.field.moments[from..from + 4 * moments];
             let (below, above) = rows.split_at(2 * moments);
             let ((a, b), (c, d)) = (below.split_at(moments), above.split_at(moments));
-            let pairs = self.optics.moments.pairs()[..reach.count].iter().zip(harmonics.iter());
-            for ((((&(l, m), harmonic), (a, b)), c), d) in pairs.zip(a.iter().zip(b)).zip(c).zip(d) {
+            let all = &self.optics.moments;
+            let pairs = all.pairs()[..reach.count].iter().zip(all.sources()).zip(harmonics.iter());
+            for (((((&(_, m), &source), harmonic), (a, b)), c), d) in pairs.zip(a.iter().zip(b)).zip(c).zip(d) {
                 let factor = (harmonic * cosines[m]) as f32;
-                let source = &sources[l];
+                let source = &sources[source];
                 for j in 0..L {
                     let moment = (lagrange[0] * a[j] + lagrange[1] * b[j]) + (lagrange[2] * c[j] + lagrange[3] * d[j]);
                     total[j] += factor * source[j] * moment;
@@ -225,6 +268,18 @@ impl<const L: usize> NullaryFnOnce for Look<'_, L> {
     }
 }
 
+/// A look with what it sees.
+pub(super) struct See<'a, const L: usize>(pub(super) Look<'a, L>);
+
+impl<const L: usize> NullaryFnOnce for See<'_, L> {
+    type Output = Seen<L>;
+
+    #[inline(always)]
+    fn call(self) -> Seen<L> {
+        self.0.solved.look(&self.0)
+    }
+}
+
 /// What a look sees, before the phase functions of sunlight scattered once.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seen<const L: usize> {
@@ -234,10 +289,13 @@ pub(super) struct Seen<const L: usize> {
     pub(super) once: [[f64; L]; MOST_SPECIES],
     /// Sum of that over the species with peaks, times the depth of peaks.
     pub(super) peaks: [f64; L],
+    /// Q and U of the table's light, referred to the horizontal ([`horizontal`]).
+    pub(super) linear: [[f64; L]; 2],
 }
 
 impl<const L: usize> Seen<L> {
-    const NOTHING: Self = Self { rest: [0.0; L], once: [[0.0; L]; MOST_SPECIES], peaks: [0.0; L] };
+    const NOTHING: Self =
+        Self { rest: [0.0; L], once: [[0.0; L]; MOST_SPECIES], peaks: [0.0; L], linear: [[0.0; L]; 2] };
 }
 
 /// Takes sunlight scattered once, and the weights of the table's sources.
@@ -279,12 +337,12 @@ impl<const L: usize> Take<L> for Taker<'_, L> {
 const PASSES: f64 = 0.02;
 
 /// A line of sight with a sun.
-struct Sight<'a, const L: usize> {
-    solved: &'a Solved<L>,
+pub(super) struct Sight<'a, const L: usize> {
+    pub(super) solved: &'a Solved<L>,
     chord: &'a Chord<'a, L>,
-    from: Place,
-    direction: DVec3,
-    sun: DVec3,
+    pub(super) from: Place,
+    pub(super) direction: DVec3,
+    pub(super) sun: DVec3,
     sunlight: &'a Columns<L>,
 }
 
@@ -329,6 +387,13 @@ impl<const L: usize> Sight<'_, L> {
         }
     }
 
+    /// A point of the line, from the planet's centre.
+    #[inline(always)]
+    pub(super) fn position(&self, s: f64) -> DVec3 {
+        let start = self.from.up * (self.solved.grid.radius + self.from.altitude_m);
+        start + self.direction * self.chord.travelled(s)
+    }
+
     /// Adds the sources at a crossing, with the weights of the species there.
     #[inline(always)]
     fn add_sources(
@@ -340,9 +405,7 @@ impl<const L: usize> Sight<'_, L> {
         sum: &mut [f64; L],
     ) {
         let r = self.solved.grid.level_radius(place.level);
-        let start = self.from.up * (self.solved.grid.radius + self.from.altitude_m);
-        let position = start + self.direction * self.chord.travelled(place.s);
-        let there = (position.dot(self.sun) / r).clamp(-1.0, 1.0);
+        let there = (self.position(place.s).dot(self.sun) / r).clamp(-1.0, 1.0);
         let zenith = (place.s / r).clamp(-1.0, 1.0);
         let total = self.solved.diffuse(&[(place.level, 1.0)], [zenith, there, towards], weights, harmonics);
         for j in 0..L {

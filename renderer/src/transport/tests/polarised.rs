@@ -4,6 +4,8 @@ use super::*;
 use crate::phase::Tabulated;
 use crate::polarisation::{Scattering, Stokes};
 
+mod tables;
+
 /// A matrix of spheres of a kind, on 181 nodes: P12^2 + P33^2 + P34^2 = P11^2 with all three of them there, and straight
 /// on and back P33 = +-P11 alone.
 fn spheres<const L: usize>(forward: [f64; L]) -> Phase<L> {
