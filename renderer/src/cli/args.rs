@@ -117,7 +117,7 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "DEG", help_heading = "Camera")]
     pub view_elevation: Option<f64>,
     /// Keep the polarisation of light: Stokes parameters, degree and angle in the EXR, and a second PNG of degree and angle
-    /// (NAME-polarisation.png). Solved tables take what aerosol scatters again for unpolarised; --method paths does not
+    /// (NAME-polarisation.png). Solved tables know it nearly where there is aerosol, --method paths exactly
     /// [default: off; on without a word]
     #[arg(long, num_args = 0..=1, default_missing_value = "on", require_equals = true, help_heading = "Camera")]
     pub polarisation: Option<Switch>,

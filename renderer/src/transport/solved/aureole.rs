@@ -141,11 +141,7 @@ impl<const L: usize> Peak<L> {
         let straight = species.straight();
         // What was cut off the cross-section: f of the whole, the rest is 1 - f of it.
         let cut: [f64; L] = std::array::from_fn(|j| species.scattering[j] * straight[j] / (1.0 - straight[j]));
-        let most = cut.iter().copied().fold(0.0, f64::max);
-        let density = medium.components()[species.component].density.clone();
-        let phase = Phase::Rayleigh { gamma: [0.0] };
-        let component = Component { density, scattering: [most], absorption: [0.0], phase };
-        let columns = Columns::new(&Medium::new(vec![component], medium.top_m())?, shape, Tolerance::SOLVE);
+        let (columns, shares) = depths(species, (medium, shape), cut)?;
         let chi = moments(&species.phase, LAST);
         let kept = species.coefficients.len();
         let peak: Vec<[f64; L]> =
@@ -157,8 +153,23 @@ impl<const L: usize> Peak<L> {
                 })
                 .collect();
         let folds = vectorised(Convolutions { peak: &peak, straight });
-        Ok(Self { columns, shares: cut.map(|cut| cut / most), folds })
+        Ok(Self { columns, shares, folds })
     }
+}
+
+/// Depths of light scattered by a species with these cross-sections, at the wavelength where they are most, and the other wavelengths as
+/// shares.
+pub(super) fn depths<const L: usize>(
+    species: &Species<L>,
+    (medium, shape): (&Medium<L>, Shape),
+    cross_sections: [f64; L],
+) -> Result<(Columns<1>, [f64; L]), MediumError> {
+    let most = cross_sections.iter().copied().fold(0.0, f64::max);
+    let density = medium.components()[species.component].density.clone();
+    let phase = Phase::Rayleigh { gamma: [0.0] };
+    let component = Component { density, scattering: [most], absorption: [0.0], phase };
+    let columns = Columns::new(&Medium::new(vec![component], medium.top_m())?, shape, Tolerance::SOLVE);
+    Ok((columns, cross_sections.map(|one| one / most)))
 }
 
 /// f Q^(*n) from the moments of Q, as work for vectors.

@@ -5,6 +5,7 @@ use super::grid::nearest;
 use super::harmonics::legendre;
 use super::line::{Rule, Take, crossings, quadrature};
 use super::linear::Linear;
+use super::onward::Dipoles;
 use super::orders::{Gathered, LANES, Turns};
 use super::rays::Line;
 use crate::geometry::Place;
@@ -177,7 +178,7 @@ impl<const L: usize> Scattering<L> {
 struct Step<const L: usize> {
     row: usize,
     frame: [f32; 2],
-    /// Of each species.
+    /// Of each species, and of dipoles.
     ways: Vec<Ways<L>>,
 }
 
@@ -228,7 +229,7 @@ pub(super) fn scatter<const L: usize, const AZIMUTHS: usize>(
 ) -> (Vec<[f32; L]>, Vec<[f32; L]>) {
     let suns = &setup.grid.suns;
     let mut sum = Gathered::new(setup.optics.moments.count(), suns.count());
-    let mut light = Light::new(suns.batches::<AZIMUTHS>(), setup.optics.species.len());
+    let mut light = Light::new(suns.batches::<AZIMUTHS>(), rows(setup));
     for line in lines {
         let steps = steps(setup, level, line.zenith, sunlight);
         let turns = Turns::new::<AZIMUTHS>(line.zenith, suns);
@@ -246,6 +247,11 @@ pub(super) fn scatter<const L: usize, const AZIMUTHS: usize>(
     (sum.moments, sum.ground)
 }
 
+/// Rows of what is scattered along a line: of each species, and of polarised light those of [`Dipoles`].
+fn rows<const L: usize>(setup: &Setup<'_, L>) -> usize {
+    setup.optics.species.len() + if setup.optics.moments.polarised() { 2 } else { 0 }
+}
+
 #[inline(always)]
 fn steps<const L: usize>(setup: &Setup<'_, L>, level: usize, zenith: f64, sunlight: &Sunlight<L>) -> Vec<Step<L>> {
     let grid = setup.grid;
@@ -259,19 +265,28 @@ fn steps<const L: usize>(setup: &Setup<'_, L>, level: usize, zenith: f64, sunlig
     let species = setup.optics.species.len();
     let mut steps: Vec<Step<L>> = Vec::with_capacity(places.len());
     let mut last: Option<f64> = None;
-    let (mut falling, mut rising) = (vec![[0.0; L]; species], vec![[0.0; L]; species]);
+    let rows = rows(setup);
+    let (mut falling, mut rising) = (vec![[0.0; L]; rows], vec![[0.0; L]; rows]);
+    let ahead = setup.optics.onward.along(Place::above(grid.levels[level]), direction);
     for place in &places {
         falling.fill([0.0; L]);
         rising.fill([0.0; L]);
         if let Some(last) = last {
             let rule = Rule { fine: false, least: 1.0, bends: &grid.bends };
-            let mut hats = Hats { from: last, to: place.s, falling: &mut falling, rising: &mut rising };
+            let ((falling, more_falling), (rising, more_rising)) =
+                (falling.split_at_mut(species), rising.split_at_mut(species));
+            let linear = (rows > species).then_some(Dipoles {
+                to: Hats { from: last, to: place.s, falling: more_falling, rising: more_rising },
+                optics: setup.optics,
+                ahead: &ahead,
+            });
+            let mut hats = (Hats { from: last, to: place.s, falling, rising }, linear);
             if !quadrature(&chord, setup.optics, (last, place.s), rule, &mut hats) {
                 break;
             }
         }
         last = Some(place.s);
-        let mut ways = vec![Ways::NOTHING; species];
+        let mut ways = vec![Ways::NOTHING; rows];
         for (((way, before), falling), rising) in
             ways.iter_mut().zip(steps.last_mut().into_iter().flat_map(|step| &mut step.ways)).zip(&falling).zip(&rising)
         {
@@ -291,7 +306,7 @@ fn steps<const L: usize>(setup: &Setup<'_, L>, level: usize, zenith: f64, sunlig
 
 /// Sunlight scattered into a line, for each sun and azimuth: transmittance to the sun is taken for linear between two crossings.
 struct Light<const L: usize> {
-    /// Of each species in turn for each batch.
+    /// Of each species, and of dipoles, in turn for each batch.
     sums: Vec<[[f32; L]; LANES]>,
     /// How far above the horizon the suns of each batch were at the crossing before.
     above: Vec<[f32; LANES]>,
@@ -301,9 +316,9 @@ struct Light<const L: usize> {
 }
 
 impl<const L: usize> Light<L> {
-    fn new(batches: usize, species: usize) -> Self {
+    fn new(batches: usize, rows: usize) -> Self {
         Self {
-            sums: vec![[[0.0; L]; LANES]; batches * species],
+            sums: vec![[[0.0; L]; LANES]; batches * rows],
             above: vec![[0.0; LANES]; batches],
             radiance: vec![[0.0; L]; batches * LANES],
             linear: vec![[[0.0; L]; 2]; batches * LANES],
@@ -381,17 +396,15 @@ impl<const L: usize> Light<L> {
     /// Makes Q and U of what molecules scatter.
     #[inline(always)]
     fn polarise(&mut self, setup: &Setup<'_, L>, line: &Line<L>, turns: &Turns) {
-        let species = &setup.optics.species;
-        let states = self.sums.chunks_exact(species.len().max(1)).zip(self.linear.as_chunks_mut::<LANES>().0);
+        let rows = rows(setup);
+        let states = self.sums.chunks_exact(rows).zip(self.linear.as_chunks_mut::<LANES>().0);
         for (batch, (sums, linear)) in turns.batches.iter().zip(states) {
             let shares = batch.sunlight(line.zenith as f32);
             for (i, (linear, shares)) in linear.iter_mut().zip(shares).enumerate() {
                 *linear = [[0.0; L]; 2];
-                for (one, sums) in species.iter().zip(sums).filter(|(one, _)| one.is_molecular()) {
-                    let dipoles: [f32; L] = std::array::from_fn(|j| one.coefficients[2][j] as f32 * sums[i][j]);
-                    for (row, share) in linear.iter_mut().zip(shares) {
-                        add_scaled(row, share, &dipoles);
-                    }
+                // Sunlight is natural: times beta.
+                for (row, share) in linear.iter_mut().zip(shares) {
+                    add_scaled(row, share, &sums[rows - 1][i]);
                 }
             }
         }
@@ -407,11 +420,11 @@ impl<const L: usize> Light<L> {
         sunlight: &Sunlight<L>,
         scattering: &Scattering<L>,
     ) {
-        let species = setup.optics.species.len();
+        let (species, rows) = (setup.optics.species.len(), rows(setup));
         let batches = turns.batches.iter().zip(self.radiance.as_chunks_mut::<LANES>().0);
         for (b, (batch, radiance)) in batches.enumerate() {
             *radiance = [[0.0; L]; LANES];
-            for (index, sums) in self.sums[b * species..(b + 1) * species].iter().enumerate() {
+            for (index, sums) in self.sums[b * rows..b * rows + species].iter().enumerate() {
                 for i in 0..LANES {
                     let phase = scattering.at(index, batch.towards[i]);
                     add_product(&mut radiance[i], &phase, &sums[i]);

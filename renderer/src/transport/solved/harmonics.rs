@@ -49,6 +49,7 @@ impl Moments {
         };
         let steps = (0..=degree).flat_map(|m| (0..=degree).map(move |l| (m, l))).map(|(m, l)| step(m, l)).collect();
         let twin = |i: usize| Some((pairs[..RAYLEIGH].iter().position(|pair| *pair == pairs[i])?, i));
+        // In the order of m, since the pairs are.
         let twins: Vec<_> = (RAYLEIGH..pairs.len()).filter_map(twin).collect();
         let source = |i: usize| if twins.iter().any(|(_, twin)| *twin == i) { degree + 1 } else { pairs[i].0 };
         let sources = (0..pairs.len()).map(source).collect();
@@ -63,6 +64,11 @@ impl Moments {
     /// Which source each goes with: those of the degrees, and that which is [`Moments::apart`].
     pub(super) fn sources(&self) -> &[usize] {
         &self.sources
+    }
+
+    /// Where radiance has its own moment (2, m) beside that of vector harmonics.
+    pub(super) fn twin(&self, m: usize) -> Option<usize> {
+        self.twins.get(m).map(|(_, twin)| *twin)
     }
 
     /// How many sources there are.

@@ -88,6 +88,16 @@ pub(super) trait Take<const L: usize> {
     fn take(&mut self, s: f64, scattered: &[[f64; L]]);
 }
 
+impl<A: Take<L>, B: Take<L>, const L: usize> Take<L> for (A, Option<B>) {
+    #[inline(always)]
+    fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
+        self.0.take(s, scattered);
+        if let Some(other) = &mut self.1 {
+            other.take(s, scattered);
+        }
+    }
+}
+
 /// Takes the sum over all points times Lagrange's polynomials through the crossings around an interval: weights of the
 /// crossings in the integral of what lies between.
 pub(super) struct Spread<'a, const L: usize> {

@@ -11,14 +11,15 @@
 //!
 //! M_k = int (I, Q, U) . Y_k d omega, and molecules send k_s (b_0 M_0 Y_00 + b_2 sum_m M_2m Y_2m), b_0 and b_2 as of their phase function
 //! (docs/polarisation.md). A line, its verticals and the planet's centre lie in one plane, so e1 and e2 are the same all along it. Aerosol
-//! scatters radiance by its own moments and sends out radiance alone.
+//! scatters radiance by its own moments and sends out radiance alone, but for what onward.rs says.
 
+use super::Solved;
 use super::grid::{Between, Suns};
+use super::harmonics::Moments;
 use super::line::Crossing;
 use super::orders::{Around, Batch, Field, Gathered, LANES, Turns, azimuth_cosines};
 use super::rays::{Line, Node};
 use super::view::Sight;
-use super::{Optics, Solved};
 use crate::vectors::add_scaled;
 use glam::DVec3;
 use std::f32::consts::PI;
@@ -40,29 +41,38 @@ fn turned([q, u]: &[[f32; 3]; 2], cos: f32, sin: f32) -> [[f32; 3]; 2] {
     [[q[0], q[1] * cos, q[2] * cos_2], [0.0, u[1] * sin, u[2] * sin_2]]
 }
 
-impl<const L: usize> Optics<L> {
-    /// b_2 of molecules times their weights.
-    #[inline(always)]
-    fn dipoles(&self, weights: &[[f64; L]]) -> [f32; L] {
-        let mut sum = [0.0; L];
-        for (one, weights) in self.species.iter().zip(weights).filter(|(one, _)| one.is_molecular()) {
-            for j in 0..L {
-                sum[j] += one.coefficients[2][j] * weights[j];
-            }
-        }
-        sum.map(|v| v as f32)
-    }
+/// Moments of all suns at a level.
+struct Level<'a, const L: usize> {
+    rows: &'a [[f32; L]],
+    moments: &'a Moments,
 }
 
-/// sum_k w_k M_2m of the four suns that a place lies between; `level` has the moments of all suns, `count` each.
-#[inline(always)]
-fn between<const L: usize>(level: &[[f32; L]], count: usize, first: usize, weights: [f32; 4], m: usize) -> [f32; L] {
-    let [a, b, c, d] = [0, 1, 2, 3].map(|k| &level[(first + k) * count + 1 + m]);
-    let mut sum = [0.0; L];
-    for j in 0..L {
-        sum[j] = (weights[0] * a[j] + weights[1] * b[j]) + (weights[2] * c[j] + weights[3] * d[j]);
+impl<const L: usize> Level<'_, L> {
+    /// alpha M_2m + (beta - alpha) I_2m at a place that lies between four suns, the first of them and their weights given.
+    #[inline(always)]
+    fn source(&self, first: usize, weights: [f32; 4], m: usize, [alpha, beta]: &[[f32; L]; 2]) -> [f32; L] {
+        let mut sum = self.between(first, weights, 1 + m);
+        for j in 0..L {
+            sum[j] *= alpha[j];
+        }
+        if let Some(twin) = self.moments.twin(m) {
+            let radiance = self.between(first, weights, twin);
+            for j in 0..L {
+                sum[j] += (beta[j] - alpha[j]) * radiance[j];
+            }
+        }
+        sum
     }
-    sum
+
+    #[inline(always)]
+    fn between(&self, first: usize, weights: [f32; 4], moment: usize) -> [f32; L] {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| &self.rows[(first + k) * self.moments.count() + moment]);
+        let mut sum = [0.0; L];
+        for j in 0..L {
+            sum[j] = (weights[0] * a[j] + weights[1] * b[j]) + (weights[2] * c[j] + weights[3] * d[j]);
+        }
+        sum
+    }
 }
 
 impl<const L: usize> Around<'_, L> {
@@ -71,9 +81,8 @@ impl<const L: usize> Around<'_, L> {
     pub(super) fn polarise(&self, turns: &Turns, node: &Node<L>, field: &Field<L>, linear: &mut [Linear<L>]) {
         let harmonics = harmonics(f64::from(node.zenith)).map(|row| row.map(|v| v as f32));
         let (suns, count) = (self.suns.count(), self.moments.count());
-        let level = &field.moments[node.level * suns * count..][..suns * count];
-        // Of molecules alone.
-        let source = node.sources[2];
+        let rows = &field.moments[node.level * suns * count..][..suns * count];
+        let level = Level { rows, moments: self.moments };
         for (batch, linear) in turns.batches.iter().zip(linear.as_chunks_mut::<LANES>().0) {
             let there = batch.there(node.frame);
             let place = self.suns.locate(&there);
@@ -83,12 +92,9 @@ impl<const L: usize> Around<'_, L> {
                 let [q, u] = turned(&harmonics, cos, (1.0 - cos * cos).max(0.0).sqrt());
                 let weights = place.weights.map(|weights| weights[i]);
                 for m in 0..3 {
-                    let mut moment = between(level, count, place.first[i] as usize, weights, m);
-                    for j in 0..L {
-                        moment[j] *= source[j];
-                    }
-                    add_scaled(sum_q, q[m], &moment);
-                    add_scaled(sum_u, u[m], &moment);
+                    let source = level.source(place.first[i] as usize, weights, m, &node.dipoles);
+                    add_scaled(sum_q, q[m], &source);
+                    add_scaled(sum_u, u[m], &source);
                 }
             }
         }
@@ -140,11 +146,12 @@ pub(super) fn horizontal(up: DVec3, direction: DVec3) -> DVec3 {
 }
 
 impl<const L: usize> Sight<'_, L> {
-    /// Adds Q and U of the sources at a crossing, referred to [`horizontal`], with the weights of the species there.
+    /// Adds Q and U of the sources at a crossing, referred to [`horizontal`], with the weights
+    /// there times alpha and beta (onward.rs).
     #[inline(always)]
-    pub(super) fn add_linear(&self, place: &Crossing, weights: &[[f64; L]], sum: &mut [[f64; L]; 2]) {
+    pub(super) fn add_linear(&self, place: &Crossing, dipoles: &[[f64; L]; 2], sum: &mut [[f64; L]; 2]) {
         let Solved { grid, optics, field, .. } = self.solved;
-        let source = optics.dipoles(weights);
+        let dipoles = dipoles.map(|row| row.map(|v| v as f32));
         let position = self.position(place.s);
         let up = position.normalize();
         let suns: &Suns = &grid.suns;
@@ -158,14 +165,14 @@ impl<const L: usize> Sight<'_, L> {
         let harmonics = harmonics(zenith).map(|row| row.map(|v| v as f32));
         let [q, u] = turned(&harmonics, cos as f32, sin as f32);
         let count = optics.moments.count();
-        let level = &field.moments[place.level * suns.count() * count..][..suns.count() * count];
+        let rows = &field.moments[place.level * suns.count() * count..][..suns.count() * count];
+        let level = Level { rows, moments: &optics.moments };
         let [sum_q, sum_u] = sum;
         for m in 0..3 {
-            let moment = between(level, count, first as usize, weights.map(|weight| weight[0]), m);
+            let source = level.source(first as usize, weights.map(|weight| weight[0]), m, &dipoles);
             for j in 0..L {
-                let light = source[j] * moment[j];
-                sum_q[j] += f64::from(q[m] * light);
-                sum_u[j] += f64::from(u[m] * light);
+                sum_q[j] += f64::from(q[m] * source[j]);
+                sum_u[j] += f64::from(u[m] * source[j]);
             }
         }
     }
@@ -173,7 +180,6 @@ impl<const L: usize> Sight<'_, L> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::harmonics::Moments;
     use super::super::orders::AZIMUTHS;
     use super::*;
 

@@ -26,6 +26,7 @@ mod harmonics;
 mod line;
 mod linear;
 mod mix;
+mod onward;
 mod orders;
 mod panorama;
 mod rays;
@@ -48,6 +49,7 @@ use glam::DVec3;
 use grid::Grid;
 use harmonics::{MOST_DEGREE, Moments, RAYLEIGH};
 use mix::Mixer;
+use onward::Onward;
 use orders::{AZIMUTHS, Around, FEW_AZIMUTHS, Field};
 use pulp::NullaryFnOnce;
 use rayon::prelude::*;
@@ -99,6 +101,8 @@ struct Optics<const L: usize> {
     medium: Medium<L>,
     columns: Columns<L>,
     aureole: Aureole<L>,
+    /// Of polarised light.
+    onward: Onward<L>,
     albedo: [f64; L],
 }
 
@@ -240,8 +244,8 @@ impl<const L: usize> Solved<L> {
         Self::kept(medium, shape, albedo, resolution, None)
     }
 
-    /// As [`Solved::new`], of polarised light: molecules scatter and make Stokes parameters, other scatterers radiance alone (what they
-    /// make of sunlight itself is polarised by their matrices).
+    /// As [`Solved::new`], of polarised light: exact for molecules; of what other scatterers make of light that was scattered before, Q and
+    /// U are kept to degree 2 (docs/solver.md).
     ///
     /// # Errors
     /// As [`Solved::new`].
@@ -283,7 +287,9 @@ impl<const L: usize> Solved<L> {
         let (species, medium) = species::scaled(medium, degree)?;
         let columns = Columns::new(&medium, shape, Tolerance::SOLVE);
         let aureole = Aureole::new(&species, &medium, shape)?;
-        let optics = Optics { moments: Moments::new(degree, polarised), species, medium, columns, aureole, albedo };
+        let onward = if polarised { Onward::new(&species, &medium, shape)? } else { Onward::default() };
+        let moments = Moments::new(degree, polarised);
+        let optics = Optics { moments, species, medium, columns, aureole, onward, albedo };
         Self::with(Arc::new(optics), radius_m, resolution, (kept, start))
     }
 
@@ -297,7 +303,8 @@ impl<const L: usize> Solved<L> {
         let grid = Grid::new(&medium, radius_m, &Resolution::FINE);
         let species = species::whole(&medium);
         let (moments, aureole) = (Moments::new(2, false), Aureole::none());
-        let optics = Optics { moments, species, medium, columns, aureole, albedo };
+        let onward = Onward::default();
+        let optics = Optics { moments, species, medium, columns, aureole, onward, albedo };
         let field = Field { moments: Vec::new(), ground: Vec::new() };
         let resolutions = vec![Resolution::FINE];
         Ok(Self { optics: Arc::new(optics), grid, resolutions, field, orders: 1, residual: 0.0 })

@@ -270,12 +270,19 @@ impl<const L: usize> Survey<'_, L> {
             let mut values = vec![single(&seen.rest), single(&seen.peaks)];
             values.extend(seen.once[..species].iter().map(single));
             if polarised {
+                values.extend(seen.turned[..species].iter().map(single));
                 values.extend(seen.linear.iter().map(single));
             }
             values
         };
         let values = rings.iter().flatten().flat_map(of).collect();
-        Nodes { rings: rings.len() - 1, azimuths, values, rows: if polarised { 4 } else { 2 } + species, species }
+        Nodes {
+            rings: rings.len() - 1,
+            azimuths,
+            values,
+            rows: if polarised { 4 + 2 * species } else { 2 + species },
+            species,
+        }
     }
 
     /// Whether nodes show what is seen.
@@ -395,8 +402,8 @@ impl<const L: usize> Nodes<L> {
     fn seen(&self, [ring, azimuth]: [f64; 2]) -> Seen<L> {
         let nodes = self;
         let (along, across) = (inside(nodes.rings, ring), mirrored(nodes.azimuths, azimuth));
-        let mut values = [[0.0_f32; L]; MOST_SPECIES + 4];
-        let last = 3 + nodes.species;
+        let mut values = [[0.0_f32; L]; 2 * MOST_SPECIES + 4];
+        let last = 3 + 2 * nodes.species;
         for (row, value) in values.iter_mut().enumerate().take(nodes.rows) {
             let mut sum = [0.0; L];
             for (ring, a) in along {
@@ -412,8 +419,9 @@ impl<const L: usize> Nodes<L> {
             *value = sum;
         }
         let [rest, peaks, others @ ..] = values.map(|row| row.map(f64::from));
-        let mut once = [[0.0; L]; MOST_SPECIES];
+        let (mut once, mut turned) = ([[0.0; L]; MOST_SPECIES], [[0.0; L]; MOST_SPECIES]);
         once[..nodes.species].copy_from_slice(&others[..nodes.species]);
-        Seen { rest, peaks, once, linear: [others[nodes.species], others[nodes.species + 1]] }
+        turned[..nodes.species].copy_from_slice(&others[nodes.species..2 * nodes.species]);
+        Seen { rest, peaks, once, turned, linear: [others[2 * nodes.species], others[2 * nodes.species + 1]] }
     }
 }

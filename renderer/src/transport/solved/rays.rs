@@ -2,6 +2,7 @@
 
 use super::Setup;
 use super::line::{Rule, Spread, Stencil, crossings, quadrature};
+use super::onward::Dipoles;
 use super::orders::AZIMUTHS;
 use crate::geometry::Place;
 use crate::vectors::exp_minus;
@@ -22,6 +23,8 @@ pub(super) struct Node<const L: usize> {
     /// sum over the species of b_l times the weight of the node in the integral of transmittance times scattering coefficient,
     /// for l = 0 ..= degree.
     pub(super) sources: Vec<[f32; L]>,
+    /// Of polarised light the weights for Q and U times alpha and beta ([`Dipoles`]).
+    pub(super) dipoles: [[f32; L]; 2],
 }
 
 /// The ground at the end of a line.
@@ -77,17 +80,28 @@ fn line<const L: usize>(
     // Weights of each node in turn, by species.
     let species = setup.optics.species.len();
     let mut weights = vec![[0.0; L]; species * places.len()];
+    let polarised = setup.optics.moments.polarised();
+    let mut dipoles = vec![[0.0; L]; 2 * places.len()];
+    let ahead = setup.optics.onward.along(Place::above(grid.levels[level]), direction);
     for (i, ends) in places.windows(2).enumerate() {
         let rule = Rule { fine: true, least: 1.0, bends: &grid.bends };
         let stencil = Stencil::around(i, &places, &grid.walls);
-        let mut spread = Spread { places: &places, stencil, weights: &mut weights };
+        let spread = Spread { places: &places, stencil, weights: &mut weights };
+        let linear = polarised.then(|| Dipoles {
+            to: Spread { places: &places, stencil, weights: &mut dipoles },
+            optics: setup.optics,
+            ahead: &ahead,
+        });
+        let mut spread = (spread, linear);
         if !quadrature(&chord, setup.optics, (ends[0].s, ends[1].s), rule, &mut spread) {
             break;
         }
     }
     let frame = |s: f64, r: f64| [(radius / r) as f32, ((s - from) / r) as f32];
     let mut harmonics = Vec::new();
-    for (place, weights) in places.iter().zip(weights.chunks_exact(species.max(1))) {
+    for ((place, weights), dipoles) in
+        places.iter().zip(weights.chunks_exact(species.max(1))).zip(dipoles.as_chunks::<2>().0)
+    {
         let Some(reach) = setup.optics.reach(weights) else { continue };
         let r = grid.level_radius(place.level);
         let zenith = (place.s / r).clamp(-1.0, 1.0);
@@ -102,6 +116,7 @@ fn line<const L: usize>(
             zenith: zenith as f32,
             harmonics: harmonics[..count].iter().map(|&v| v as f32).collect(),
             sources,
+            dipoles: dipoles.map(|row| row.map(|v| v as f32)),
         });
     }
     if chord.ends_on_ground() {

@@ -5,6 +5,7 @@ use super::grid::Between;
 use super::harmonics::MOST_DEGREE;
 use super::line::{Crossing, MOST_SPECIES, Rule, Spread, Stencil, Take, crossings, quadrature};
 use super::linear::horizontal;
+use super::onward::{Ahead, Dipoles};
 use super::{Optics, Solved};
 use crate::atmosphere::{Chord, Columns};
 use crate::geometry::Place;
@@ -57,7 +58,8 @@ impl<const L: usize> Solved<L> {
         let whole = self.shade(seen, towards, single);
         // Light scattered once keeps the polarisation of its matrix, also in the peak that the table takes for straight on.
         let mut once = [0.0; L];
-        for (one, light) in self.optics.species.iter().zip(&seen.once) {
+        let light = if self.is_polarised() && !single { &seen.turned } else { &seen.once };
+        for (one, light) in self.optics.species.iter().zip(light) {
             let matrix = one.phase.natural(towards);
             for j in 0..L {
                 once[j] += matrix[j].b1 * one.whole[j] * light[j];
@@ -126,6 +128,9 @@ impl<const L: usize> Solved<L> {
         let places = crossings(&chord, &self.grid.levels, backwards);
         let species = &self.optics.species;
         let mut weights = vec![[0.0; L]; species.len() * places.len()];
+        let polarised = self.is_polarised() && !single;
+        let mut dipoles = vec![[0.0; L]; if polarised { 2 * places.len() } else { 0 }];
+        let ahead = polarised.then(|| self.optics.onward.along(from, direction));
         let through = if single { None } else { self.optics.aureole.along(from, direction) };
         // Four nodes of Gauss' rule where the line passes through the air in front of space, or two.
         let fine = chord.perigee() > 0.0 && begin < 0.0;
@@ -135,12 +140,19 @@ impl<const L: usize> Solved<L> {
         'line: for i in 0..places.len().saturating_sub(1) {
             let (mut a, end) = (places[i].s.max(begin), places[i + 1].s.min(end));
             let stencil = Stencil::around(i, &places, &self.grid.walls);
-            let mut taker = Taker {
+            let taker = Taker {
                 sight: &sight,
                 through: through.as_ref(),
+                ahead: ahead.as_ref(),
                 spread: (!single).then_some(Spread { places: &places, stencil, weights: &mut weights }),
                 seen: &mut seen,
             };
+            let linear = ahead.as_ref().map(|ahead| Dipoles {
+                to: Spread { places: &places, stencil, weights: &mut dipoles },
+                optics: &self.optics,
+                ahead,
+            });
+            let mut taker = (taker, linear);
             for b in cuts.into_iter().chain([end]) {
                 let b = b.min(end);
                 if b > a {
@@ -156,9 +168,9 @@ impl<const L: usize> Solved<L> {
             let mut harmonics = Vec::with_capacity(self.optics.moments.count());
             for (place, weights) in places.iter().zip(weights.chunks_exact(species.len().max(1))) {
                 sight.add_sources(place, weights, towards, &mut harmonics, &mut seen.rest);
-                if self.optics.moments.polarised() {
-                    sight.add_linear(place, weights, &mut seen.linear);
-                }
+            }
+            for (place, weight) in places.iter().zip(dipoles.as_chunks::<2>().0) {
+                sight.add_linear(place, weight, &mut seen.linear);
             }
         }
         if chord.ends_on_ground() {
@@ -287,6 +299,8 @@ pub(super) struct Seen<const L: usize> {
     pub(super) rest: [f64; L],
     /// Of each species the integral of its scattering coefficient times the transmittances to the eye and to the sun.
     pub(super) once: [[f64; L]; MOST_SPECIES],
+    /// Of polarised light the same as it counts for Q and U.
+    pub(super) turned: [[f64; L]; MOST_SPECIES],
     /// Sum of that over the species with peaks, times the depth of peaks.
     pub(super) peaks: [f64; L],
     /// Q and U of the table's light, referred to the horizontal ([`horizontal`]).
@@ -294,14 +308,20 @@ pub(super) struct Seen<const L: usize> {
 }
 
 impl<const L: usize> Seen<L> {
-    const NOTHING: Self =
-        Self { rest: [0.0; L], once: [[0.0; L]; MOST_SPECIES], peaks: [0.0; L], linear: [[0.0; L]; 2] };
+    const NOTHING: Self = Self {
+        rest: [0.0; L],
+        once: [[0.0; L]; MOST_SPECIES],
+        turned: [[0.0; L]; MOST_SPECIES],
+        peaks: [0.0; L],
+        linear: [[0.0; L]; 2],
+    };
 }
 
 /// Takes sunlight scattered once, and the weights of the table's sources.
 struct Taker<'a, const L: usize> {
     sight: &'a Sight<'a, L>,
     through: Option<&'a Through<'a, L>>,
+    ahead: Option<&'a Ahead<'a, L>>,
     spread: Option<Spread<'a, L>>,
     seen: &'a mut Seen<L>,
 }
@@ -318,9 +338,16 @@ impl<const L: usize> Take<L> for Taker<'_, L> {
             return;
         };
         let depth = self.through.map(|through| through.depth(s, place, sun));
-        for ((once, scattered), one) in self.seen.once.iter_mut().zip(scattered).zip(&solved.optics.species) {
+        let more = self.ahead.map(|ahead| ahead.more(s));
+        let once = self.seen.once.iter_mut().zip(&mut self.seen.turned);
+        for (((once, turned), scattered), one) in once.zip(scattered).zip(&solved.optics.species) {
             for j in 0..L {
                 once[j] += scattered[j] * sunlight[j];
+            }
+            if let Some(more) = &more {
+                for j in 0..L {
+                    turned[j] += scattered[j] * sunlight[j] * more[j];
+                }
             }
             if let Some(depth) = &depth
                 && !one.is_molecular()

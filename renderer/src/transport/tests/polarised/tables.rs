@@ -59,10 +59,9 @@ fn tables_of_molecules_agree_with_paths() {
 
 #[test]
 fn tables_with_particles_agree_with_paths_but_for_what_particles_scatter_again() {
-    // Particles of optical depth 0.2 that polarise sunlight by 60 %, more than real ones: what they scatter again is taken for natural
-    // light, which leaves out a quarter of the polarisation of a low sun's sky.
+    // Particles of optical depth 0.2 that polarise sunlight by 60 %, more than real ones: of what they scatter again degree 2 is kept alone.
     let worst = beside_paths(&hazy(), 20_000);
-    assert!(worst[0] < 1e-2 && worst[1].max(worst[2]) < 0.13, "{worst:?}");
+    assert!(worst[0] < 1e-2 && worst[1].max(worst[2]) < 3e-2, "{worst:?}");
 }
 
 #[test]
