@@ -14,6 +14,7 @@ mod radiance;
 mod render;
 mod study;
 mod sweep;
+mod words;
 
 use crate::scene::SceneError;
 use clap::Parser;

@@ -4,6 +4,7 @@
 //! sample s as point s mod m of block s / m, and blocks are added in order: so a picture depends neither on the number
 //! of threads nor on where its work was interrupted.
 
+mod carrier;
 mod certify;
 mod disc;
 mod domes;

@@ -14,7 +14,6 @@
 //! and air; the ground reflects sunlight alone.
 
 use super::march::{Air, At};
-use crate::atmosphere::Columns;
 use crate::geometry::Place;
 use crate::sampling::spiral;
 use crate::vectors::exp_minus;
@@ -45,10 +44,6 @@ impl<const L: usize> Isotropic<L> {
         Self { air, field }
     }
 
-    pub(super) fn air(&self) -> &Air<L> {
-        &self.air
-    }
-
     pub(super) fn radiance(&self, from: Place, direction: DVec3, sun: DVec3) -> [f64; L] {
         self.air.radiance((from, direction), sun, Some(|altitude, cosine| self.field(altitude, cosine)))
     }
@@ -77,12 +72,6 @@ impl<const L: usize> Isotropic<L> {
             }
         }
         sum
-    }
-
-    /// Looks through the columns.
-    #[must_use]
-    pub fn columns(&self) -> &Columns<L> {
-        self.air.columns()
     }
 }
 

@@ -53,95 +53,83 @@ const ANY_HAZE: (f64, f64) = (0.0, f64::INFINITY);
 /// Where an observer on the ground stands.
 const GROUND: (f64, f64) = (0.0, 1.0);
 
+/// A method of the whole light, as far as ranges go.
+const EXACT: Rung = Rung {
+    method: Method::Judge,
+    name: "judge",
+    source: "delta and ratio tracking (Woodcock et al. 1965; Novak et al. 2014)",
+    leaves_out: "nothing; noise",
+    sun_deg: EVERY_SUN,
+    altitude_km: ANYWHERE,
+    turbidity: ANY_HAZE,
+    polarised: true,
+    flat: true,
+};
+
+/// A method of Airlight's atmosphere without polarisation.
+const CLOSURE: Rung = Rung {
+    method: Method::Isotropic,
+    name: "isotropic",
+    source: "Hillaire 2020, section 5.5, equations 5 to 10",
+    leaves_out: "where light scattered twice or more comes from and goes to; what the sky sends to the ground",
+    polarised: false,
+    ..EXACT
+};
+
+/// A method for an observer on the ground by day.
+const BY_DAY: Rung = Rung {
+    method: Method::Oneil,
+    name: "oneil",
+    source: "O'Neil 2005 (GPU Gems 2, chapter 16)",
+    leaves_out: "as single; ozone, every profile but one exponential of 40 km on a planet of Earth's size, the ground",
+    sun_deg: DAY,
+    altitude_km: GROUND,
+    flat: false,
+    ..CLOSURE
+};
+
 /// All methods, the most exact first.
 pub const LADDER: [Rung; 10] = [
-    Rung {
-        method: Method::Judge,
-        name: "judge",
-        source: "delta and ratio tracking (Woodcock et al. 1965; Novak et al. 2014)",
-        leaves_out: "nothing; noise",
-        sun_deg: EVERY_SUN,
-        altitude_km: ANYWHERE,
-        turbidity: ANY_HAZE,
-        polarised: true,
-        flat: true,
-    },
+    EXACT,
     Rung {
         method: Method::Paths,
         name: "paths",
         source: "paths on column tables (docs/physics.md)",
         leaves_out: "2e-5 of transmittances; noise",
-        sun_deg: EVERY_SUN,
-        altitude_km: ANYWHERE,
-        turbidity: ANY_HAZE,
-        polarised: true,
-        flat: true,
+        ..EXACT
     },
     Rung {
         method: Method::Solved,
         name: "solved",
         source: "solved tables of moments (docs/solver.md)",
         leaves_out: "moments beyond the last, what lies between levels and suns",
-        sun_deg: EVERY_SUN,
-        altitude_km: ANYWHERE,
-        turbidity: ANY_HAZE,
-        polarised: true, // what of it tables do not know, scenes refuse
         flat: false,
+        ..EXACT
     },
-    Rung {
-        method: Method::Isotropic,
-        name: "isotropic",
-        source: "Hillaire 2020, section 5.5, equations 5 to 10",
-        leaves_out: "where light scattered twice or more comes from and goes to; what the sky sends to the ground",
-        sun_deg: EVERY_SUN,
-        altitude_km: ANYWHERE,
-        turbidity: ANY_HAZE,
-        polarised: false,
-        flat: true,
-    },
+    CLOSURE,
     Rung {
         method: Method::Single,
         name: "single",
         source: "Nishita et al. 1993, section 3",
         leaves_out: "all light scattered or reflected twice or more",
-        sun_deg: EVERY_SUN,
-        altitude_km: ANYWHERE,
-        turbidity: ANY_HAZE,
-        polarised: false,
-        flat: true,
+        ..CLOSURE
     },
-    Rung {
-        method: Method::Oneil,
-        name: "oneil",
-        source: "O'Neil 2005 (GPU Gems 2, chapter 16)",
-        leaves_out: "as single; ozone, every profile but one exponential of 40 km on a planet of Earth's size, the ground",
-        sun_deg: DAY,
-        altitude_km: GROUND,
-        turbidity: ANY_HAZE,
-        polarised: false,
-        flat: false,
-    },
+    BY_DAY,
     Rung {
         method: Method::HosekWilkie,
         name: "hosek-wilkie",
         source: "Hosek & Wilkie 2012 (crate hw-skymodel: RGB)",
         leaves_out: "all of the atmosphere but turbidity; the ground's view",
-        sun_deg: DAY,
-        altitude_km: GROUND,
         turbidity: (1.0, 10.0),
-        polarised: false,
-        flat: false,
+        ..BY_DAY
     },
     Rung {
         method: Method::Preetham,
         name: "preetham",
         source: "Preetham, Shirley & Smits 1999, appendix A.2",
         leaves_out: "all of the atmosphere but turbidity; the ground",
-        sun_deg: DAY,
-        altitude_km: GROUND,
         turbidity: (2.0, 6.0),
-        polarised: false,
-        flat: false,
+        ..BY_DAY
     },
     Rung {
         method: Method::Perez,
@@ -149,21 +137,14 @@ pub const LADDER: [Rung; 10] = [
         source: "Perez, Seals & Michalsky 1993, equations 1 to 8, table 1",
         leaves_out: "colour; all but clearness, brightness and illuminance, here those of isotropic",
         sun_deg: (1.0, 90.0),
-        altitude_km: GROUND,
-        turbidity: ANY_HAZE,
-        polarised: false,
-        flat: false,
+        ..BY_DAY
     },
     Rung {
         method: Method::Cie,
         name: "cie",
         source: "CIE S 011/E:2003 (ISO 15469:2004), table 1",
         leaves_out: "colour; all but the type of sky and the luminance of the zenith, here that of isotropic",
-        sun_deg: DAY,
-        altitude_km: GROUND,
-        turbidity: ANY_HAZE,
-        polarised: false,
-        flat: false,
+        ..BY_DAY
     },
 ];
 
@@ -197,7 +178,7 @@ impl Rung {
             ));
         }
         if asked.polarised && !self.polarised {
-            return refuse("knows no polarisation: take --method paths".into());
+            return refuse("knows no polarisation: take --method solved or paths".into());
         }
         if asked.flat && !self.flat {
             return refuse("needs a round planet".into());

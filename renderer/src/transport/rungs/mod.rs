@@ -22,7 +22,7 @@ mod tests;
 pub use ladder::{Conditions, LADDER, Refusal, Rung};
 pub use march::STEPS;
 
-use crate::atmosphere::{Columns, Medium};
+use crate::atmosphere::Medium;
 use crate::geometry::{Place, Shape};
 use crate::transport::Method;
 use glam::DVec3;
@@ -74,16 +74,6 @@ impl<const L: usize> Cheap<L> {
             Kind::Single(air) => air.columns().bytes(),
             Kind::Isotropic(isotropic) => isotropic.bytes(),
             Kind::Oneil(_) => 0,
-        }
-    }
-
-    /// The columns that it looks into, if it has any.
-    #[must_use]
-    pub fn columns(&self) -> Option<&Columns<L>> {
-        match &self.0 {
-            Kind::Single(air) => Some(air.columns()),
-            Kind::Isotropic(isotropic) => Some(isotropic.air().columns()),
-            Kind::Oneil(_) => None,
         }
     }
 }

@@ -96,13 +96,6 @@ impl Moments {
         &self.pairs
     }
 
-    /// Which of these is moment number `i` of others, if it is there.
-    pub(super) fn position(&self, other: &Self, i: usize) -> Option<usize> {
-        let found =
-            self.pairs[RAYLEIGH..].iter().position(|pair| *pair == other.pairs[i]).map(|found| RAYLEIGH + found);
-        if i < RAYLEIGH { Some(i) } else { found }
-    }
-
     /// How many come before the first of an order m of so many or more: all with fewer.
     pub(super) fn count_below(&self, orders: usize) -> usize {
         self.pairs.iter().position(|&(_, m)| m >= orders.max(3)).unwrap_or(self.pairs.len())

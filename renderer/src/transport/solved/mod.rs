@@ -86,8 +86,6 @@ fn off(error: f64) -> String {
 pub struct Solved<const L: usize> {
     optics: Arc<Optics<L>>,
     grid: Grid,
-    /// Its own, and those of the solutions from which it was begun, the first of all last.
-    resolutions: Vec<Resolution>,
     field: Field<L>,
     orders: usize,
     residual: f64,
@@ -188,26 +186,25 @@ pub struct Tables<const L: usize> {
 const HIDDEN: f64 = 3e-3;
 
 impl<const L: usize> Tables<L> {
-    /// Solves, of polarised light or of radiance alone, on finer grids until the table states at most this error for an observer and a sun, or there is none finer. `kept` as
-    /// in [`Solved::kept`].
+    /// Solves for `air` (medium, form of the planet, albedo of the ground; whether of polarised light or of radiance alone) on finer grids
+    /// until the table states at most this error for an observer and a sun, or there is none finer. `kept` as in [`Solved::kept`].
     ///
     /// # Errors
     /// As [`Solved::kept`].
     pub fn within(
         error: f64,
         (from, sun): (Place, DVec3),
-        (medium, shape, albedo, polarised): (&Medium<L>, Shape, [f64; L], bool),
+        air: (&Medium<L>, Shape, [f64; L], bool),
         kept: Option<&Path>,
     ) -> Result<Self, SolveError> {
-        let coarse = Resolution::COARSE;
-        let coarser = Solved::begun((medium, shape, albedo, polarised), &coarse, (kept, None))?;
+        let coarser = Solved::of(air, &Resolution::COARSE, kept)?;
         let solved = coarser.again(&Resolution::RENDER, kept)?;
         let hidden = if solved.optics.moments.degree() > 2 { HIDDEN } else { 0.0 };
         let usual = Self { solved, coarser, hidden };
         if usual.error(from, sun) <= error {
             return Ok(usual);
         }
-        let solved = Solved::begun((medium, shape, albedo, polarised), &Resolution::FINE, (kept, Some(&usual.solved)))?;
+        let solved = Solved::of(air, &Resolution::FINE, kept)?;
         Ok(Self { solved, coarser: usual.solved, hidden: 0.0 })
     }
 
@@ -255,7 +252,7 @@ impl<const L: usize> Solved<L> {
         albedo: [f64; L],
         resolution: &Resolution,
     ) -> Result<Self, SolveError> {
-        Self::begun((medium, shape, albedo, true), resolution, (None, None))
+        Self::of((medium, shape, albedo, true), resolution, None)
     }
 
     /// As [`Solved::new`], but the table is taken from the folder `kept` if it is there, by a checksum of all that it depends on, and
@@ -270,14 +267,14 @@ impl<const L: usize> Solved<L> {
         resolution: &Resolution,
         kept: Option<&Path>,
     ) -> Result<Self, SolveError> {
-        Self::begun((medium, shape, albedo, false), resolution, (kept, None))
+        Self::of((medium, shape, albedo, false), resolution, kept)
     }
 
-    /// As [`Solved::kept`], begun from a coarser solution, of polarised light or of radiance alone.
-    fn begun(
+    /// As [`Solved::kept`], of polarised light or of radiance alone.
+    fn of(
         (medium, shape, albedo, polarised): (&Medium<L>, Shape, [f64; L], bool),
         resolution: &Resolution,
-        (kept, start): (Option<&Path>, Option<&Self>),
+        kept: Option<&Path>,
     ) -> Result<Self, SolveError> {
         let Shape::Sphere { radius_m } = shape else { return Err(SolveError::Refused(ROUND)) };
         if resolution.levels < 4 || resolution.suns < 4 || resolution.parts < 1 || resolution.degree > MOST_DEGREE {
@@ -290,7 +287,7 @@ impl<const L: usize> Solved<L> {
         let onward = if polarised { Onward::new(&species, &medium, shape)? } else { Onward::default() };
         let moments = Moments::new(degree, polarised);
         let optics = Optics { moments, species, medium, columns, aureole, onward, albedo };
-        Self::with(Arc::new(optics), radius_m, resolution, (kept, start))
+        Self::with(Arc::new(optics), radius_m, resolution, kept)
     }
 
     /// The first order alone, with nothing cut off the phase functions: only [`Solved::radiance`] with `single` is of use.
@@ -306,26 +303,22 @@ impl<const L: usize> Solved<L> {
         let onward = Onward::default();
         let optics = Optics { moments, species, medium, columns, aureole, onward, albedo };
         let field = Field { moments: Vec::new(), ground: Vec::new() };
-        let resolutions = vec![Resolution::FINE];
-        Ok(Self { optics: Arc::new(optics), grid, resolutions, field, orders: 1, residual: 0.0 })
+        Ok(Self { optics: Arc::new(optics), grid, field, orders: 1, residual: 0.0 })
     }
 
     fn with(
         optics: Arc<Optics<L>>,
         radius: f64,
         resolution: &Resolution,
-        (kept, start): (Option<&Path>, Option<&Self>),
+        kept: Option<&Path>,
     ) -> Result<Self, SolveError> {
         let fine = if optics.moments.degree() > 2 { resolution.peaked() } else { *resolution };
         let grid = Grid::new(&optics.medium, radius, &fine);
-        let begin = || start.map(|start| start.field.on(&start.grid, &start.optics.moments, &grid, &optics.moments));
-        let solve = || Setup { grid: &grid, optics: &optics }.solve(&fine, begin());
-        let resolutions: Vec<_> =
-            std::iter::once(resolution).chain(start.iter().flat_map(|start| &start.resolutions)).copied().collect();
+        let solve = || Setup { grid: &grid, optics: &optics }.solve(&fine);
         let (field, orders, residual) = match kept {
             None => solve(),
             Some(folder) => {
-                let (key, moments) = (file::key(&optics, radius, &resolutions), optics.moments.count());
+                let (key, moments) = (file::key(&optics, radius, resolution), optics.moments.count());
                 let path = file::path(folder, &key);
                 if path.exists() {
                     file::solution(&tables::file::read(&path)?, &grid, moments, &key)
@@ -337,16 +330,15 @@ impl<const L: usize> Solved<L> {
                 }
             }
         };
-        Ok(Self { optics, grid, resolutions, field, orders, residual })
+        Ok(Self { optics, grid, field, orders, residual })
     }
 
-    /// The same atmosphere solved again, with as many moments, on another grid; or taken from a folder as by [`Solved::kept`]. What
-    /// is known already saves orders on a finer grid.
+    /// The same atmosphere solved again, with as many moments, on another grid; or taken from a folder as by [`Solved::kept`].
     ///
     /// # Errors
     /// [`SolveError::Kept`], which is none without a folder.
     pub fn again(&self, resolution: &Resolution, kept: Option<&Path>) -> Result<Self, SolveError> {
-        Self::with(Arc::clone(&self.optics), self.grid.radius, resolution, (kept, Some(self)))
+        Self::with(Arc::clone(&self.optics), self.grid.radius, resolution, kept)
     }
 
     /// Root mean square over 64 directions and all wavelengths of the difference to the radiances of another solution of the same
@@ -393,8 +385,8 @@ impl<const L: usize> Solved<L> {
 }
 
 impl<const L: usize> Setup<'_, L> {
-    /// The field, from a guess of it if there is one; the orders that it took, and the change that the last of them made.
-    fn solve(&self, resolution: &Resolution, start: Option<Field<L>>) -> (Field<L>, usize, f64) {
+    /// The field, the orders that it took, and the change that the last of them made.
+    fn solve(&self, resolution: &Resolution) -> (Field<L>, usize, f64) {
         let levels = self.grid.levels.len();
         let lines: Vec<_> = (0..levels)
             .into_par_iter()
@@ -424,7 +416,7 @@ impl<const L: usize> Setup<'_, L> {
             })
         };
         let mut mixer = Mixer::new(&first, self.optics.moments.count());
-        let mut field = start.unwrap_or_else(|| first.clone());
+        let mut field = first.clone();
         let mut orders = 1;
         loop {
             let mut next = step(&field);

@@ -1,11 +1,9 @@
 //! From the moments of all light to those of the light that it becomes by one more scattering or reflection.
 
-use super::grid::{Between, Grid, Suns};
+use super::grid::Suns;
 use super::harmonics::{Moments, RAYLEIGH};
-use super::line::{Crossing, Stencil};
 use super::rays::{Foot, Line, Lines, Node};
 use crate::vectors::{add_product, add_scaled};
-use rayon::prelude::*;
 use std::f32::consts::PI;
 
 /// A diffuse field: all light but the sun's own.
@@ -15,58 +13,6 @@ pub(super) struct Field<const L: usize> {
     pub(super) moments: Vec<[f32; L]>,
     /// Irradiance of the ground by diffuse light, for each sun.
     pub(super) ground: Vec<[f32; L]>,
-}
-
-impl<const L: usize> Field<L> {
-    /// The field between the places of its own grid, at those of another, with the moments that this has.
-    pub(super) fn on(&self, own: &Grid, moments: &Moments, grid: &Grid, wanted: &Moments) -> Self {
-        let suns: Vec<_> = grid.suns.sines_cosines.iter().map(|(_, cosine)| own.suns.locate(&[*cosine])).collect();
-        let between = |rows: &dyn Fn(usize) -> [f32; L], Between { first: [first], weights }: &Between<1>| {
-            let mut sum = [0.0; L];
-            for (k, [weight]) in weights.iter().enumerate() {
-                let row = rows(*first as usize + k);
-                for j in 0..L {
-                    sum[j] += weight * row[j];
-                }
-            }
-            sum
-        };
-        // In a measure in which the levels are not too uneven.
-        let measure = |h: f64| (h / own.levels[own.levels.len() - 1]).max(0.0).powf(0.4);
-        let places: Vec<_> =
-            own.levels.iter().enumerate().map(|(level, h)| Crossing { level, s: measure(*h) }).collect();
-        let columns: Vec<Option<usize>> = (0..wanted.count()).map(|i| moments.position(wanted, i)).collect();
-        let (count, stride) = (own.suns.count(), moments.count());
-        let at_level = |h: &f64| {
-            let interval = own.levels.partition_point(|level| level <= h).clamp(1, own.levels.len() - 1) - 1;
-            let stencil = Stencil::around(interval, &places, &own.walls);
-            let shares = stencil.weights(&places, measure(*h));
-            let mut rows = Vec::with_capacity(suns.len() * columns.len());
-            for sun in &suns {
-                for column in &columns {
-                    rows.push(column.map_or([0.0; L], |column| {
-                        between(
-                            &|i| {
-                                let mut sum = [0.0; L];
-                                for (k, share) in shares.iter().enumerate().take(stencil.count) {
-                                    let row = &self.moments[((stencil.first + k) * count + i) * stride + column];
-                                    for j in 0..L {
-                                        sum[j] += *share as f32 * row[j];
-                                    }
-                                }
-                                sum
-                            },
-                            sun,
-                        )
-                    }));
-                }
-            }
-            rows
-        };
-        let moments = grid.levels.par_iter().flat_map_iter(at_level).collect();
-        let ground = suns.iter().map(|sun| between(&|i| self.ground[i], sun)).collect();
-        Self { moments, ground }
-    }
 }
 
 /// Azimuths on half a circle of further orders, where there are molecules alone, and else. As many orders m are told apart by them: in

@@ -1,0 +1,279 @@
+//! A packet of wavelengths of a sky, and how its radiance is found.
+
+use super::RenderError;
+use super::certify::{self, Certifies};
+use crate::atmosphere::{Air, Columns, Medium, Tolerance};
+use crate::data::Data;
+use crate::geometry::{Place, Shape};
+use crate::light::{SunDisc, solar_angular_radius};
+use crate::polarisation::{Frame, Stokes};
+use crate::sampling::Sampler;
+use crate::scene::{Scene, SceneError, SunShape};
+use crate::spectrum::{Packet, Wavelengths};
+use crate::transport::rungs::Cheap;
+use crate::transport::{self, Certificate, Estimator, Method, Panorama, Problem, SolveError, Tables};
+use glam::DVec3;
+use std::fmt::Debug;
+use std::path::Path;
+use tables::units::EARTH_RADIUS_M;
+
+/// Error of a panorama: a share of what its table states, within limits.
+const SHARE: f64 = 0.1;
+const SHOWN: (f64, f64) = (2e-4, 2e-3);
+
+/// Error that a solved table may state at most.
+const MOST_ERROR: f64 = 0.1;
+
+/// What a packet is made from.
+pub(super) struct Parts<'a> {
+    pub(super) wavelengths: &'a Wavelengths,
+    pub(super) albedo: &'a [f64],
+    pub(super) air: &'a Air,
+    pub(super) data: &'a Data,
+    pub(super) place: Place,
+    pub(super) sun_direction: DVec3,
+    pub(super) wanted: &'a [DVec3],
+    pub(super) scene: &'a Scene,
+    pub(super) kept: Option<&'a Path>,
+}
+
+impl Parts<'_> {
+    pub(super) fn carry<const L: usize>(&self, packet: &Packet) -> Result<Box<dyn Carrier>, RenderError> {
+        let nm: [f64; L] = self.wavelengths.lanes(packet);
+        let last = packet.range.end - 1;
+        let (scene, polarised) = (self.scene, self.scene.is_polarised());
+        let shape = if scene.flat { Shape::Flat } else { Shape::Sphere { radius_m: EARTH_RADIUS_M } };
+        let medium = self.air.medium(&nm)?;
+        if polarised && !medium.polarises() {
+            return Err(SceneError::Refused(
+                "a phase function without a scattering matrix (Henyey-Greenstein) leaves polarisation unknown: take \
+                 --phase mie"
+                    .into(),
+            )
+            .into());
+        }
+        let albedo = std::array::from_fn(|lane| self.albedo[(packet.range.start + lane).min(last)]);
+        let sun = match scene.sun_shape {
+            SunShape::Disc => SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius())?,
+            SunShape::Even => SunDisc::darkened(self.sun_direction, solar_angular_radius(), vec![[1.0; L]]),
+            SunShape::Point => SunDisc::beam(self.sun_direction),
+        };
+        let means = match (scene.method.estimator(), scene.method) {
+            (Some(estimator), _) => Means::Estimated(estimator, Columns::new(&medium, shape, Tolerance::RENDER)),
+            (None, Method::Solved) => {
+                let (view, sky) = ((self.place, self.sun_direction), (&medium, shape, albedo, polarised));
+                let tables = Tables::within(scene.table_error, view, sky, self.kept)?;
+                let (error, seen) = seen(&tables, self.place, &sun, self.wanted)?;
+                Means::Solved { tables, error, seen }
+            }
+            (None, method) => Means::Cheap(Cheap::new(method, &medium, shape, albedo, scene.steps)),
+        };
+        let (max_orders, count) = (scene.orders, packet.range.len());
+        Ok(Box::new(Lanes { means, shape, medium, albedo, sun, polarised, max_orders, count }))
+    }
+}
+
+/// The error of tables for an observer and a sun, and what is seen with each of the suns that stand for the disc.
+fn seen<const L: usize>(
+    tables: &Tables<L>,
+    place: Place,
+    sun: &SunDisc<L>,
+    wanted: &[DVec3],
+) -> Result<(f64, Vec<Panorama<L>>), SolveError> {
+    let error = tables.error(place, sun.direction());
+    if error.is_nan() || error > MOST_ERROR {
+        return Err(SolveError::Inexact(error));
+    }
+    let (least, most) = SHOWN;
+    let shown = (SHARE * error).clamp(least, most);
+    let suns = tables.solved.suns(place, sun).into_iter();
+    Ok((error, suns.map(|sun| Panorama::new(&tables.solved, place, sun, shown, wanted)).collect()))
+}
+
+/// A packet of wavelengths, whatever the number of its lanes; slices are as long as
+/// the packet's range.
+pub(super) trait Carrier: Debug + Send + Sync {
+    fn radiance(&self, from: Place, direction: DVec3, sampler: &mut Sampler, factors: &mut [f64]);
+    /// Hands the Stokes parameters of each lane to `see`.
+    fn stokes(
+        &self,
+        from: Place,
+        direction: DVec3,
+        frame: Frame,
+        sampler: &mut Sampler,
+        see: &mut dyn FnMut(usize, Stokes),
+    );
+    fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool;
+    fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]);
+    fn table_error(&self) -> Option<f64>;
+    fn is_noiseless(&self) -> bool;
+    fn bytes(&self) -> usize;
+    /// Turns to another observer and sun.
+    fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError>;
+    /// A certificate of the solved table for its observer, of so many wavelengths; none of polarised light.
+    fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>>;
+}
+
+/// How radiance is found, with the tables for it.
+#[derive(Debug)]
+enum Means<const L: usize> {
+    Estimated(Estimator, Columns<L>),
+    /// With the error for this observer and this sun, and what is seen with each of the suns that stand for the disc.
+    Solved {
+        tables: Tables<L>,
+        error: f64,
+        seen: Vec<Panorama<L>>,
+    },
+    /// None behind a fitted sky, where only the sun is asked for.
+    Cheap(Option<Cheap<L>>),
+}
+
+#[derive(Debug)]
+struct Lanes<const L: usize> {
+    means: Means<L>,
+    shape: Shape,
+    medium: Medium<L>,
+    albedo: [f64; L],
+    sun: SunDisc<L>,
+    /// Whether light is followed with its polarisation.
+    polarised: bool,
+    max_orders: Option<u32>,
+    /// Wavelengths of the packet, at most L.
+    count: usize,
+}
+
+impl<const L: usize> Lanes<L> {
+    fn problem<'a>(&'a self, columns: &'a Columns<L>) -> Problem<'a, L> {
+        Problem {
+            shape: self.shape,
+            medium: &self.medium,
+            columns,
+            albedo: self.albedo,
+            sun: Some(&self.sun),
+            environment: None,
+            max_orders: self.max_orders,
+        }
+    }
+
+    /// What a cheap method sees; nothing in a fitted sky, which is seen elsewhere.
+    fn cheaply(&self, cheap: Option<&Cheap<L>>, from: Place, direction: DVec3) -> [f64; L] {
+        cheap.map_or([0.0; L], |cheap| cheap.radiance(from, direction, self.sun.direction()))
+    }
+}
+
+impl<const L: usize> Carrier for Lanes<L> {
+    fn radiance(&self, from: Place, direction: DVec3, sampler: &mut Sampler, factors: &mut [f64]) {
+        let (estimator, columns) = match &self.means {
+            Means::Estimated(estimator, columns) => (*estimator, columns),
+            Means::Solved { tables, seen, .. } => {
+                factors.fill(0.0);
+                for sun in seen {
+                    let radiance = sun.radiance(&tables.solved, direction);
+                    for (factor, radiance) in factors.iter_mut().zip(radiance) {
+                        *factor += radiance / seen.len() as f64;
+                    }
+                }
+                return;
+            }
+            Means::Cheap(cheap) => {
+                let seen = self.cheaply(cheap.as_ref(), from, direction);
+                factors.copy_from_slice(&seen[..factors.len()]);
+                return;
+            }
+        };
+        if self.polarised {
+            // I is the same in every frame.
+            let frame = Frame::new(direction, direction.any_orthonormal_vector());
+            return self.stokes(from, direction, frame, sampler, &mut |lane, seen| factors[lane] = seen.i);
+        }
+        let estimate = transport::radiance(estimator, &self.problem(columns), from, direction, sampler);
+        factors.copy_from_slice(&estimate[..factors.len()]);
+    }
+
+    fn stokes(
+        &self,
+        from: Place,
+        direction: DVec3,
+        frame: Frame,
+        sampler: &mut Sampler,
+        see: &mut dyn FnMut(usize, Stokes),
+    ) {
+        let seen = match &self.means {
+            Means::Estimated(estimator, columns) => {
+                transport::stokes(*estimator, &self.problem(columns), from, direction, frame, sampler)
+            }
+            Means::Solved { tables, seen, .. } => {
+                let mut sum = [Stokes::default(); L];
+                for sun in seen {
+                    for (sum, one) in sum.iter_mut().zip(sun.stokes(&tables.solved, direction, frame)) {
+                        *sum += one * (seen.len() as f64).recip();
+                    }
+                }
+                sum
+            }
+            // These know natural light alone, and scenes with polarisation refuse them.
+            Means::Cheap(cheap) => {
+                self.cheaply(cheap.as_ref(), from, direction).map(|i| Stokes { i, ..Stokes::default() })
+            }
+        };
+        seen.into_iter().take(self.count).enumerate().for_each(|(lane, seen)| see(lane, seen));
+    }
+
+    fn table_error(&self) -> Option<f64> {
+        match &self.means {
+            Means::Solved { error, .. } => Some(*error),
+            Means::Estimated(..) | Means::Cheap(_) => None,
+        }
+    }
+
+    fn is_noiseless(&self) -> bool {
+        !matches!(self.means, Means::Estimated(..))
+    }
+
+    fn bytes(&self) -> usize {
+        match &self.means {
+            Means::Estimated(_, columns) => columns.bytes(),
+            Means::Solved { tables, .. } => tables.solved.bytes(),
+            Means::Cheap(cheap) => cheap.as_ref().map_or(0, Cheap::bytes),
+        }
+    }
+
+    fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>> {
+        let Means::Solved { tables: Tables { solved, .. }, .. } = &self.means else { return None };
+        if solved.is_polarised() {
+            return None;
+        }
+        let columns = Columns::new(&self.medium, self.shape, Tolerance::RENDER);
+        let certificate = Certificate::new(solved, columns, from, self.sun.direction());
+        Some(Box::new(certify::Packet { solved, certificate, count }))
+    }
+
+    fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError> {
+        self.sun.turn(sun);
+        if let Means::Solved { tables, error, seen: panoramas } = &mut self.means {
+            (*error, *panoramas) = seen(tables, from, &self.sun, wanted)?;
+        }
+        Ok(())
+    }
+
+    fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool {
+        let Some(disc) = self.sun.radiance(direction) else { return false };
+        let transmittance = self.medium.transmittance(self.shape, from, direction);
+        for ((factor, radiance), transmittance) in factors.iter_mut().zip(disc).zip(transmittance) {
+            *factor += weight * radiance * transmittance;
+        }
+        true
+    }
+
+    fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]) {
+        let (direction, darkening) = self.sun.sample(u);
+        let cosine = direction.dot(from.up);
+        if cosine <= 0.0 {
+            return;
+        }
+        let transmittance = self.medium.transmittance(self.shape, from, direction);
+        for ((factor, darkening), transmittance) in factors.iter_mut().zip(darkening).zip(transmittance) {
+            *factor += weight * cosine * darkening * transmittance;
+        }
+    }
+}
