@@ -477,7 +477,6 @@ mod tests {
     use super::*;
     use crate::atmosphere::OzoneSource;
     use clap::Parser;
-    use tables::views::Biome;
 
     #[derive(Debug, Parser)]
     struct Program {
