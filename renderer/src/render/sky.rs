@@ -154,7 +154,7 @@ impl Sky {
     /// error that scene asks for.
     ///
     /// # Errors
-    /// [`SolveError::Inexact`] if the tables are too far off there; then it is of neither scene. [`SceneError::Refused`] of a fitted
+    /// [`RenderError::Solve`] if the tables are too far off there; then it is of neither scene. [`SceneError::Refused`] of a fitted
     /// sky, which belongs to one sun.
     pub fn turn(&mut self, scene: &Scene) -> Result<(), RenderError> {
         if self.fitted.is_some() {
