@@ -9,6 +9,7 @@ use crate::render::Shard;
 use crate::scene::{Albedo, CameraKind, Scene, SceneError, SunShape, word};
 use crate::spectrum::{Scheme, Wavelengths};
 use crate::sweep::PATHS;
+use crate::vectors::Vectors;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -297,6 +298,29 @@ pub(super) struct BenchArgs {
     /// Least time for each direction in seconds
     #[arg(long, value_name = "S", default_value_t = 1.0)]
     pub seconds: f64,
+    /// Widest vectors that are taken (of x86-64)
+    #[arg(long, value_name = "KIND", default_value = "widest")]
+    pub vectors: VectorsName,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum VectorsName {
+    /// 128 bits: what every processor has
+    Plain,
+    /// 256 bits
+    Avx2,
+    /// What this processor has
+    Widest,
+}
+
+impl From<VectorsName> for Vectors {
+    fn from(name: VectorsName) -> Self {
+        match name {
+            VectorsName::Plain => Self::Plain,
+            VectorsName::Avx2 => Self::Avx2,
+            VectorsName::Widest => Self::Widest,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

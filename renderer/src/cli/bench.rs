@@ -9,10 +9,12 @@ use crate::data::Data;
 use crate::sampling::POINTS;
 use crate::scene::SceneError;
 use crate::transport::Estimator;
+use crate::vectors::take_at_most;
 use std::time::Instant;
 use tables::views::Biome;
 
 pub(super) fn run(args: &BenchArgs) -> Result<Outcome, Failure> {
+    take_at_most(args.vectors.into());
     match args.what {
         BenchName::Anchors => anchors(args),
         BenchName::Solved => solved(args),

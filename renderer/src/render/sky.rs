@@ -113,7 +113,6 @@ impl Sky {
         let carriers = wavelengths.packets().into_iter().map(|packet| {
             let carrier = match packet.lanes {
                 1 => parts.carry::<1>(&packet),
-                4 => parts.carry::<4>(&packet),
                 8 => parts.carry::<8>(&packet),
                 _ => parts.carry::<16>(&packet),
             };

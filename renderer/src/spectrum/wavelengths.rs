@@ -46,7 +46,7 @@ pub enum SpectrumError {
 pub struct Packet {
     /// Indices into the list.
     pub range: Range<usize>,
-    /// Lanes of the packet, 1, 4, 8 or 16; those beyond the range repeat its last wavelength.
+    /// Lanes of the packet, 1, 8 or 16; those beyond the range repeat its last wavelength.
     pub lanes: usize,
 }
 
@@ -88,12 +88,12 @@ impl Wavelengths {
     }
 
     /// Shares the list out to as few packets of at most 16 as possible, as even as
-    /// possible, with the least lanes of 1, 4, 8, 16 that hold the largest of them.
+    /// possible, with the least lanes of 1, 8, 16 that hold the largest of them.
     #[must_use]
     pub fn packets(&self) -> Vec<Packet> {
         let n = self.0.len();
         let size = n.div_ceil(n.div_ceil(16));
-        let lanes = [1, 4, 8, 16].into_iter().find(|&l| l >= size).unwrap_or(16);
+        let lanes = [1, 8, 16].into_iter().find(|&l| l >= size).unwrap_or(16);
         (0..n).step_by(size).map(|start| Packet { range: start..(start + size).min(n), lanes }).collect()
     }
 
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn packets_cover_the_list_once_with_the_fewest_lanes() {
         for (count, packets, lanes) in
-            [(1, 1, 1), (2, 1, 4), (5, 1, 8), (9, 1, 16), (16, 1, 16), (17, 2, 16), (40, 3, 16), (401, 26, 16)]
+            [(1, 1, 1), (2, 1, 8), (5, 1, 8), (9, 1, 16), (16, 1, 16), (17, 2, 16), (40, 3, 16), (401, 26, 16)]
         {
             let wavelengths = Wavelengths::visible(count).expect("valid");
             let got = wavelengths.packets();

@@ -261,7 +261,7 @@ impl<'a, const L: usize> Certificate<'a, L> {
         let Some(view) = self.view(direction) else { return Certified { mean: [0.0; L], variance: [0.0; L] } };
         let (mut mean, mut squares) = ([0.0; L], [0.0; L]);
         for number in 0..fans {
-            let value = vectorised(Estimate { certificate: self, view: &view, fan, seed, pixel, number });
+            let value = vectorised::<L, _>(Estimate { certificate: self, view: &view, fan, seed, pixel, number });
             for j in 0..L {
                 let off = value[j] - mean[j];
                 mean[j] += off / f64::from(number + 1);

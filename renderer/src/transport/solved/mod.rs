@@ -400,7 +400,7 @@ impl<const L: usize> Setup<'_, L> {
             Field { moments: parts.into_iter().flat_map(|(moments, _)| moments).collect(), ground }
         };
         let first = collect(&|level| {
-            vectorised(First {
+            vectorised::<L, _>(First {
                 setup: self,
                 level,
                 lines: &lines[level].lines,
@@ -412,7 +412,7 @@ impl<const L: usize> Setup<'_, L> {
         let step = |field: &Field<L>| {
             collect(&|level| {
                 let (moments, suns) = (&self.optics.moments, &self.grid.suns);
-                vectorised(Next { around: Around { lines: &lines[level], moments, suns, reflected }, field })
+                vectorised::<L, _>(Next { around: Around { lines: &lines[level], moments, suns, reflected }, field })
             })
         };
         let mut mixer = Mixer::new(&first, self.optics.moments.count());
