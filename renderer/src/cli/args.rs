@@ -6,11 +6,11 @@ use super::words::{
 };
 use crate::atmosphere::Depolarisation;
 use crate::render::Shard;
-use crate::scene::{Albedo, CameraKind, Scene, SceneError, SunShape, word};
+use crate::scene::{Albedo, CameraKind, Moment, Scene, SceneError, SunShape, word};
 use crate::spectrum::{Scheme, Wavelengths};
 use crate::sweep::PATHS;
 use crate::vectors::Vectors;
-use clap::{Args, ValueEnum};
+use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
 use tables::views::AerosolSource;
@@ -19,7 +19,7 @@ use tables::views::AerosolSource;
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub(super) struct RenderArgs {
-    /// Scene to start from: JSON, or the EXR file of a picture, which carries it; flags override it
+    /// Scene to start from: TOML (`airlight scene new`), JSON, or the EXR file of a picture, which carries it; flags override it
     #[arg(value_name = "SCENE")]
     pub scene: Option<PathBuf>,
     #[command(flatten)]
@@ -138,6 +138,16 @@ pub(super) struct RenderArgs {
     /// Azimuth of the sun in degrees clockwise from north, -360 to 360 [default: 180]
     #[arg(long, value_name = "DEG", help_heading = "Sun, air and ground")]
     pub sun_azimuth: Option<f64>,
+    /// An instant that says where the sun stands at --latitude and --longitude, how far it is, and the month:
+    /// 2026-06-21T18:30:00+02:00, or Z for UTC
+    #[arg(long, value_name = "INSTANT", conflicts_with_all = ["sun_elevation", "sun_azimuth", "sun_distance", "month"], help_heading = "Sun, air and ground")]
+    pub date: Option<Moment>,
+    /// Longitude in degrees, east positive, -180 to 180, with --date
+    #[arg(long, value_name = "DEG", help_heading = "Sun, air and ground")]
+    pub longitude: Option<f64>,
+    /// Distance of the sun in astronomical units, 0.9 to 1.1 [default: 1]
+    #[arg(long, value_name = "AU", help_heading = "Sun, air and ground")]
+    pub sun_distance: Option<f64>,
     /// Whether the disc itself is drawn; it gives light either way [default: on]
     #[arg(long, help_heading = "Sun, air and ground")]
     pub sun_disc: Option<Switch>,
@@ -157,7 +167,7 @@ pub(super) struct RenderArgs {
     /// Month, 1 to 12, which ozone goes by [default: 6]
     #[arg(long, value_name = "1..12", help_heading = "Sun, air and ground")]
     pub month: Option<u8>,
-    /// Latitude in degrees, north positive, -90 to 90, which ozone goes by [default: 45]
+    /// Latitude in degrees, north positive, -90 to 90, which ozone goes by, and with --date the sun [default: 45]
     #[arg(long, value_name = "DEG", help_heading = "Sun, air and ground")]
     pub latitude: Option<f64>,
     /// Ozone column in Dobson units, 0 to 1000 [default: that of the month and latitude]
@@ -275,6 +285,40 @@ pub(super) struct RadianceArgs {
     /// Say nothing but errors
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// What `airlight scene` does.
+#[derive(Debug, Subcommand)]
+pub(super) enum SceneCommand {
+    /// Write a scene file with every key, its meaning, unit, range and default, to be filled in
+    New {
+        /// File to write, which must not be there; standard output if none is given
+        #[arg(value_name = "FILE.toml")]
+        file: Option<PathBuf>,
+    },
+    /// Say whether scene files can be rendered, and with which tables
+    Check {
+        /// Scenes: TOML, JSON, or the EXR files of pictures
+        #[arg(value_name = "SCENE", required = true)]
+        scenes: Vec<PathBuf>,
+        /// Folder with the tables
+        #[arg(long, value_name = "DIR", default_value = "data")]
+        data: PathBuf,
+    },
+    /// Show a scene, or that of a picture, as TOML: the keys that are not at their defaults
+    Show {
+        /// Scene: TOML, JSON, or the EXR file of a picture
+        #[arg(value_name = "SCENE")]
+        scene: PathBuf,
+        /// Every key, with its meaning
+        #[arg(long)]
+        all: bool,
+        /// As JSON
+        #[arg(long, conflicts_with = "all")]
+        json: bool,
+    },
+    /// Print the JSON schema of scene files, for editors
+    Schema,
 }
 
 /// Flags of `airlight bench`.
@@ -445,11 +489,16 @@ impl RenderArgs {
         // So does an effort.
         let effort = self.spp.is_some() || self.error.is_some() || self.time.is_some();
         let timed = self.time.filter(|_| self.error.is_none()).map(|_| TIMED_BLOCK);
+        // The sun on the command line replaces the date of the scene.
+        let moved = self.sun_elevation.or(self.sun_azimuth).or(self.sun_distance).is_some() || self.month.is_some();
         let scene = Scene {
             altitude_km: self.altitude.unwrap_or(base.altitude_km),
             top_km: self.top.unwrap_or(base.top_km),
             sun_elevation_deg: self.sun_elevation.unwrap_or(base.sun_elevation_deg),
             sun_azimuth_deg: self.sun_azimuth.unwrap_or(base.sun_azimuth_deg),
+            sun_distance_au: self.sun_distance.unwrap_or(base.sun_distance_au),
+            date: self.date.or(base.date.filter(|_| !moved)),
+            longitude_deg: self.longitude.or(base.longitude_deg),
             sun_disc: self.sun_disc.map_or(base.sun_disc, |switch| switch == Switch::On),
             month: self.month.unwrap_or(base.month),
             latitude_deg: self.latitude.unwrap_or(base.latitude_deg),
@@ -491,6 +540,7 @@ impl RenderArgs {
             error: self.error.or(base.error.filter(|_| !effort)),
             table_error: self.table_error.unwrap_or(base.table_error),
         };
+        let scene = scene.settled()?;
         scene.validate()?;
         Ok(scene)
     }

@@ -12,6 +12,7 @@ mod picture;
 mod progress;
 mod radiance;
 mod render;
+mod scene;
 mod study;
 mod sweep;
 mod words;
@@ -26,6 +27,9 @@ use std::process::ExitCode;
 enum Command {
     /// Render a picture: EXR to calculate with, PNG to look at
     Render(Box<args::RenderArgs>),
+    /// Write, check and show scene files
+    #[command(subcommand)]
+    Scene(args::SceneCommand),
     /// Put runs with different seeds or shards together as one picture
     Merge(args::MergeArgs),
     /// Answer a file of reference cases: radiances with their standard errors
@@ -71,6 +75,7 @@ impl From<SceneError> for Failure {
 pub fn main() -> ExitCode {
     let outcome = match Command::parse() {
         Command::Render(args) => render::run(&args),
+        Command::Scene(command) => scene::run(&command),
         Command::Merge(args) => merge::run(&args),
         Command::Radiance(args) => radiance::run(&args),
         Command::Bench(args) => bench::run(&args),

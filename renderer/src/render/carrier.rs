@@ -5,7 +5,7 @@ use super::certify::{self, Certifies};
 use crate::atmosphere::{Air, Columns, Medium, Tolerance};
 use crate::data::Data;
 use crate::geometry::{Place, Shape};
-use crate::light::{SunDisc, solar_angular_radius};
+use crate::light::{SunDisc, solar_angular_radius_at};
 use crate::polarisation::{Frame, Stokes};
 use crate::sampling::Sampler;
 use crate::scene::{Scene, SceneError, SunShape};
@@ -54,8 +54,12 @@ impl Parts<'_> {
         }
         let albedo = std::array::from_fn(|lane| self.albedo[(packet.range.start + lane).min(last)]);
         let sun = match scene.sun_shape {
-            SunShape::Disc => SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius())?,
-            SunShape::Even => SunDisc::darkened(self.sun_direction, solar_angular_radius(), vec![[1.0; L]]),
+            SunShape::Disc => {
+                SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius_at(scene.sun_distance_au))?
+            }
+            SunShape::Even => {
+                SunDisc::darkened(self.sun_direction, solar_angular_radius_at(scene.sun_distance_au), vec![[1.0; L]])
+            }
             SunShape::Point => SunDisc::beam(self.sun_direction),
         };
         let means = match (scene.method.estimator(), scene.method) {

@@ -77,6 +77,13 @@ impl Sky {
             with_own = data.with_tables(&scene.tables)?;
             &with_own
         };
+        let elsewhere;
+        let data = if scene.sun_distance_au == 1.0 {
+            data
+        } else {
+            elsewhere = data.with_sun_at(scene.sun_distance_au);
+            &elsewhere
+        };
         check_own(scene, data)?;
         check_wavelengths(scene, data)?;
         let wavelengths = &scene.wavelengths();

@@ -59,6 +59,20 @@ pub enum Method {
 }
 
 impl Method {
+    /// All of them, from exact to rough.
+    pub const ALL: [Self; 10] = [
+        Self::Judge,
+        Self::Paths,
+        Self::Solved,
+        Self::Isotropic,
+        Self::Single,
+        Self::Oneil,
+        Self::HosekWilkie,
+        Self::Preetham,
+        Self::Perez,
+        Self::Cie,
+    ];
+
     /// Its estimator; none for methods without noise.
     #[must_use]
     pub fn estimator(self) -> Option<Estimator> {
