@@ -276,16 +276,21 @@ fn describe_verdict(verdict: &Verdict, sun: DVec3, filtered: bool) {
     let Some(Residual { rms, most, mean, worst, worst_direction }) = errors.first().copied() else { return };
     let (high, away) = (worst_direction.z.asin().to_degrees(), worst_direction.angle_between(sun).to_degrees());
     let signed = |share: f64| format!("{}{}", if share < 0.0 { "-" } else { "+" }, percent(share.abs()));
-    let (beyond, asked) = (if verdict.holds() { "below" } else { "not shown to be below" }, percent(asked));
     let stokes = errors.len() > 1;
     let what = match (stokes, filtered) {
         (true, _) => "I is ",
         (false, true) => "behind the filter ",
         (false, false) => "",
     };
-    let all = if stokes { "all three " } else { "" };
+    let beyond = match (stokes, verdict.holds()) {
+        (false, true) => "below",
+        (true, true) => "all three below",
+        (false, false) => "not shown to be below",
+        (true, false) => "not all three shown to be below",
+    };
+    let asked = percent(asked);
     println!(
-        "certified   {what}off by {} (rms), at most {} with 95 % confidence: {all}{beyond} the asked {asked}",
+        "certified   {what}off by {} (rms), at most {} with 95 % confidence: {beyond} the asked {asked}",
         percent(rms),
         percent(most)
     );
