@@ -1,7 +1,7 @@
 //! What of light a table knows and a certificate follows: radiance alone, or I, Q and U. Certificates are written once, for either.
 
 use super::Solved;
-use super::view::{Look, See};
+use super::view::Look;
 use crate::atmosphere::Columns;
 use crate::geometry::Place;
 use crate::polarisation::{Analyser, Frame, Stokes};
@@ -134,7 +134,7 @@ impl Tabled for Polarised {
         sun: DVec3,
         sunlight: &Columns<L>,
     ) -> [Stokes; L] {
-        let seen = vectorised(See(Look { solved, from, direction, sun, single: true, sunlight }));
+        let seen = vectorised::<L, _>(Look { solved, from, direction, sun, single: true, sunlight });
         solved.show(&seen, (from, direction, frame), sun, true)
     }
 }
