@@ -77,7 +77,8 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Sampling")]
     pub threads: Option<u16>,
     /// Look at 128 directions of the picture by unbiased estimates that end in the solved table, until it is clear with 95 %
-    /// confidence whether the table's rms error is below E, 1e-5 to 1 [default without E: 0.1%]
+    /// confidence whether the table's rms error is below E, 1e-5 to 1: with --polarisation that of I and those of Q and U relative to I,
+    /// with --filter that of what passes [default without E: 0.1%]
     #[arg(long, value_name = "E", value_parser = share, num_args = 0..=1, default_missing_value = "0.1%", require_equals = true, help_heading = "Sampling")]
     pub certify: Option<f64>,
     /// Relative error (rms) that solved tables are to have, 1e-5 to 1: finer ones are solved until they state it, or there is none
@@ -336,7 +337,7 @@ pub(super) struct BenchArgs {
     /// Folder with the tables
     #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
-    /// Biomes beside which solved tables are put, or in which polarised transfer is measured: one, none or all
+    /// Biomes beside which solved tables are put, or in which polarised transfer or certificates are measured: one, none or all
     #[arg(long, value_name = "NAME", default_value = "all")]
     pub biome: String,
     /// Least time for each direction in seconds
@@ -385,6 +386,8 @@ pub(super) enum BenchName {
     Solved,
     /// Polarised beside scalar transfer in clear air and in every biome
     Polarised,
+    /// Certificates of polarised light beside those of radiance alone in clear air and in every biome
+    Certificates,
 }
 
 /// Flags of `airlight study`.
@@ -419,6 +422,8 @@ pub(super) enum StudyName {
     Columns,
     /// Solved tables of clear air and the nine biomes: error over the sun's elevation, by certificates
     SolvedSuns,
+    /// As solved-suns, by day, of polarised light: errors of I, Q and U relative to I
+    PolarisedSuns,
     /// Solved tables: error against the time to solve, for grids, moments and orders
     SolvedGrids,
     /// Every method: error against cost over 60 scenes, from day to twilight, from the ground to space (an hour on two cores)
@@ -437,6 +442,7 @@ impl StudyName {
             Self::Columns => "columns",
             Self::Ladder => "ladder",
             Self::SolvedSuns => "solved-suns",
+            Self::PolarisedSuns => "polarised-suns",
             Self::SolvedGrids => "solved-grids",
             Self::Strip => "strip",
             Self::NeutralPoints => "neutral-points",

@@ -53,11 +53,6 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     if args.certify.is_some() && !sky.is_solved() {
         return Err(Failure::usage("--certify looks at solved tables: leave --method out"));
     }
-    if args.certify.is_some() && sky.is_polarised() {
-        return Err(Failure::usage(
-            "certificates are of radiance without polarisation: leave out --polarisation and --filter",
-        ));
-    }
     if let Some((x, y)) = args.pixel {
         return print_sample(&scene, &sky, (x, y), args.sample);
     }

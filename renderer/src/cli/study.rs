@@ -26,6 +26,7 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
     let make: Make = match args.what {
         StudyName::Columns => chart(study::columns::make),
         StudyName::SolvedSuns => chart(study::solved::suns),
+        StudyName::PolarisedSuns => chart(study::solved::polarised_suns),
         StudyName::SolvedGrids => chart(study::solved::grids),
         StudyName::NeutralPoints => chart(study::neutral_points::make),
         StudyName::Polarisation => Box::new(|data, progress| {

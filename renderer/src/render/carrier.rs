@@ -2,6 +2,7 @@
 
 use super::RenderError;
 use super::certify::{self, Certifies};
+use super::sky::Shows;
 use crate::atmosphere::{Air, Columns, Medium, Tolerance};
 use crate::data::Data;
 use crate::geometry::{Place, Shape};
@@ -114,8 +115,8 @@ pub(super) trait Carrier: Debug + Send + Sync {
     fn bytes(&self) -> usize;
     /// Turns to another observer and sun.
     fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError>;
-    /// A certificate of the solved table for its observer, of so many wavelengths; none of polarised light.
-    fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>>;
+    /// A certificate of the solved table for its observer, of what is shown at so many wavelengths.
+    fn certificate(&self, from: Place, shows: Shows, count: usize) -> Option<Box<dyn Certifies + '_>>;
 }
 
 /// How radiance is found, with the tables for it.
@@ -242,14 +243,11 @@ impl<const L: usize> Carrier for Lanes<L> {
         }
     }
 
-    fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>> {
+    fn certificate(&self, from: Place, shows: Shows, count: usize) -> Option<Box<dyn Certifies + '_>> {
         let Means::Solved { tables: Tables { solved, .. }, .. } = &self.means else { return None };
-        if solved.is_polarised() {
-            return None;
-        }
         let columns = Columns::new(&self.medium, self.shape, Tolerance::RENDER);
         let certificate = Certificate::new(solved, columns, from, self.sun.direction());
-        Some(Box::new(certify::Packet { solved, certificate, count }))
+        Some(Box::new(certify::Packet { solved, certificate, shows, count }))
     }
 
     fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError> {

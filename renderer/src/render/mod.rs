@@ -21,7 +21,7 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
-pub use certify::{Verdict, certify, certify_table};
+pub use certify::{Residual, Verdict, certify, certify_table};
 pub use disc::disc_layer;
 pub use merge::{MergeError, Merged};
 pub use sample::replay;

@@ -47,7 +47,7 @@ struct Fitted {
 
 /// What a picture shows of the light.
 #[derive(Debug, Clone, Copy)]
-enum Shows {
+pub(super) enum Shows {
     /// Radiance.
     Radiance,
     /// Stokes parameters.
@@ -265,9 +265,9 @@ impl Sky {
         errors.reduce(|a, b| Some(a?.max(b?))).flatten()
     }
 
-    /// Certificates of the solved tables, packet by packet; `None` if there are none, or of polarised light.
+    /// Certificates of the solved tables, packet by packet; `None` if there are none.
     pub(super) fn certificates(&self) -> Option<Vec<Box<dyn Certifies + '_>>> {
-        self.carriers.iter().map(|(range, carrier)| carrier.certificate(self.place, range.len())).collect()
+        self.carriers.iter().map(|(range, carrier)| carrier.certificate(self.place, self.shows, range.len())).collect()
     }
 
     /// Adds the solar disc seen in `direction` through the air, in sr^-1, times `weight`.

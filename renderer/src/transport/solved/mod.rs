@@ -18,6 +18,7 @@
 
 mod aureole;
 mod certify;
+mod fan;
 mod file;
 mod first;
 mod grid;
@@ -30,7 +31,9 @@ mod onward;
 mod orders;
 mod panorama;
 mod rays;
+mod sources;
 mod species;
+mod tabled;
 #[cfg(test)]
 mod tests;
 mod view;

@@ -8,6 +8,8 @@ use crate::phase::Phase;
 use crate::transport::{Estimator, Problem};
 use tables::{Axis, Curve, Outside, Scale};
 
+mod certified;
+
 /// As fine as tests need.
 const TEST: Resolution = Resolution { levels: 18, suns: 36, zeniths: [6, 4, 5], parts: 4, degree: 12, change: 5e-4 };
 

@@ -4,7 +4,6 @@ use super::aureole::Through;
 use super::grid::Between;
 use super::harmonics::MOST_DEGREE;
 use super::line::{Crossing, MOST_SPECIES, Rule, Spread, Stencil, Take, crossings, quadrature};
-use super::linear::horizontal;
 use super::onward::{Ahead, Dipoles};
 use super::{Optics, Solved};
 use crate::atmosphere::{Chord, Columns};
@@ -71,7 +70,7 @@ impl<const L: usize> Solved<L> {
                 once[j] += matrix[j].b1 * one.whole[j] * light[j];
             }
         }
-        let level = Frame::new(direction, horizontal(from.up, direction));
+        let level = Frame::level(from.up, direction);
         let (plane, turn) = (frame.of_scattering(direction, sun).0, level.turn_to(frame, direction));
         std::array::from_fn(|j| {
             let [q, u] = seen.linear.map(|row| row[j]);
