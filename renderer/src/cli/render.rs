@@ -195,7 +195,7 @@ fn replay_command(words: impl Iterator<Item = String>, (x, y): (u32, u32), sampl
     format!("{} --pixel {x},{y} --sample {sample}", words.join(" "))
 }
 
-/// A scene from TOML or JSON, or from the EXR file of a picture. Its own tables are found and, of a picture, must be what they
+/// A scene from TOML, JSON or XML of the thesis, or from the EXR file of a picture. Its own tables are found and, of a picture, must be what they
 /// were, unless `tables` come in their place.
 pub(super) fn read_scene(path: &Path, tables: &[String]) -> Result<Scene, Failure> {
     let at = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
@@ -208,7 +208,17 @@ pub(super) fn read_scene(path: &Path, tables: &[String]) -> Result<Scene, Failur
     } else {
         (std::str::from_utf8(&bytes).map_err(|error| Failure::usage(at(&error)))?, None)
     };
-    let read = if has_extension(path, "toml") { Scene::from_toml(text) } else { Scene::from_json(text) };
+    let read = if has_extension(path, "xml") {
+        let folder = path.parent().unwrap_or(Path::new("."));
+        Scene::from_mitsuba(text, folder).map(|imported| {
+            imported.notes.iter().for_each(|note| eprintln!("airlight: {}: {note}", path.display()));
+            imported.scene
+        })
+    } else if has_extension(path, "toml") {
+        Scene::from_toml(text)
+    } else {
+        Scene::from_json(text)
+    };
     let mut scene = read.map_err(|error| Failure::usage(at(&error)))?;
     if tables.is_empty() {
         for table in &mut scene.tables {

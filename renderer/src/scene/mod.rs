@@ -4,11 +4,13 @@
 //! the names of the fields; a key that is left out has its default, an unknown key is an error.
 
 mod file;
+mod mitsuba;
 mod moment;
 mod names;
 mod schema;
 mod validate;
 
+pub use mitsuba::Imported;
 pub use moment::{Moment, SunPlace};
 pub(crate) use names::word;
 pub use names::{CameraKind, SunShape};
