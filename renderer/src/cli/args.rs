@@ -396,7 +396,7 @@ pub(super) struct StudyArgs {
     /// What to study
     #[arg(value_name = "WHAT")]
     pub what: StudyName,
-    /// Of the ladder 18 scenes and the main settings alone, in some five minutes
+    /// Of the ladder 18 scenes and the main settings alone, in some five minutes; of stability fewer cells, in one or two
     #[arg(long)]
     pub quick: bool,
     /// CSV to write, or PNG [default: plots/airlight-WHAT.csv, or .png]
@@ -428,6 +428,8 @@ pub(super) enum StudyName {
     SolvedGrids,
     /// Every method: error against cost over 60 scenes, from day to twilight, from the ground to space (an hour on two cores)
     Ladder,
+    /// Where each method leaves its error bound: maps over sun and haze, altitude and view, asymmetry, radius, wavelength, steps, mappings
+    Stability,
     /// Skies from one solution, the sun from 60 to -12 degrees, with the time of each: a strip of fisheyes (PNG)
     Strip,
     /// Where clear skies have no polarisation over the sun's elevation: the points of Arago, Babinet and Brewster
@@ -444,6 +446,7 @@ impl StudyName {
             Self::SolvedSuns => "solved-suns",
             Self::PolarisedSuns => "polarised-suns",
             Self::SolvedGrids => "solved-grids",
+            Self::Stability => "stability",
             Self::Strip => "strip",
             Self::NeutralPoints => "neutral-points",
             Self::Polarisation => "polarisation",

@@ -10,7 +10,7 @@ use crate::render::{Head, Part, Rendering, Residual, Shard, Sky, State, Summary,
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
 use crate::transport::Method;
-use crate::transport::rungs::Rung;
+use crate::transport::rungs::{Rung, Stated};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -227,6 +227,14 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, 
         let rung = Rung::of(scene.method);
         println!("method      {}: {}", rung.name, rung.source);
         println!("            leaves out {}", rung.leaves_out);
+        match sky.stated() {
+            Some(Stated { further, points }) => println!(
+                "            light scattered or reflected again is about {} (rms over mean radiance); points on a line leave {}",
+                percent(further),
+                percent(points)
+            ),
+            None => println!("            states no error: its atmosphere is another"),
+        }
     }
     for part in parts {
         println!("            {part}");

@@ -17,8 +17,8 @@ type MakeChart = fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError>;
 type Make = Box<dyn Fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Made, RenderError> + Sync>;
 
 pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
-    if args.quick && !matches!(args.what, StudyName::Ladder) {
-        return Err(Failure::usage("--quick belongs to the ladder: leave it out"));
+    if args.quick && !matches!(args.what, StudyName::Ladder | StudyName::Stability) {
+        return Err(Failure::usage("--quick belongs to the ladder and to stability: leave it out"));
     }
     let pool = super::pool(args.threads)?;
     let (size, threads) = (if args.quick { Size::Quick } else { Size::Full }, pool.current_num_threads());
@@ -36,6 +36,10 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
         StudyName::Ladder => Box::new(move |data, progress| {
             let ladder = study::ladder::make(data, size, threads, progress)?;
             Ok(Made { bytes: ladder.csv().into_bytes(), rows: ladder.summary(), measured: None })
+        }),
+        StudyName::Stability => Box::new(move |data, progress| {
+            let maps = study::stability::make(data, size, progress)?;
+            Ok(Made { bytes: maps.csv().into_bytes(), rows: maps.summary(), measured: None })
         }),
         StudyName::Strip => Box::new(|data, progress| {
             let strip = study::strip::make(data, progress)?;

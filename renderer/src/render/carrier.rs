@@ -11,7 +11,7 @@ use crate::polarisation::{Frame, Stokes};
 use crate::sampling::Sampler;
 use crate::scene::{Scene, SceneError, SunShape};
 use crate::spectrum::{Packet, Wavelengths};
-use crate::transport::rungs::Cheap;
+use crate::transport::rungs::{Cheap, Stated};
 use crate::transport::{self, Certificate, Estimator, Method, Panorama, Problem, SolveError, Tables};
 use glam::DVec3;
 use std::fmt::Debug;
@@ -23,7 +23,16 @@ const SHARE: f64 = 0.1;
 const SHOWN: (f64, f64) = (2e-4, 2e-3);
 
 /// Error that a solved table may state at most.
-const MOST_ERROR: f64 = 0.1;
+pub(crate) const MOST_ERROR: f64 = 0.1;
+
+/// Directions of a picture.
+#[derive(Debug)]
+pub(super) struct Wanted {
+    /// Of many of its pixels, if it has many.
+    pub(super) shown: Vec<DVec3>,
+    /// Of some, evenly, in which its tables are judged.
+    pub(super) judged: Vec<DVec3>,
+}
 
 /// What a packet is made from.
 pub(super) struct Parts<'a> {
@@ -33,7 +42,7 @@ pub(super) struct Parts<'a> {
     pub(super) data: &'a Data,
     pub(super) place: Place,
     pub(super) sun_direction: DVec3,
-    pub(super) wanted: &'a [DVec3],
+    pub(super) wanted: &'a Wanted,
     pub(super) scene: &'a Scene,
     pub(super) kept: Option<&'a Path>,
 }
@@ -66,7 +75,8 @@ impl Parts<'_> {
         let means = match (scene.method.estimator(), scene.method) {
             (Some(estimator), _) => Means::Estimated(estimator, Columns::new(&medium, shape, Tolerance::RENDER)),
             (None, Method::Solved) => {
-                let (view, sky) = ((self.place, self.sun_direction), (&medium, shape, albedo, polarised));
+                let view = (self.place, self.sun_direction, self.wanted.judged.as_slice());
+                let sky = (&medium, shape, albedo, polarised);
                 let tables = Tables::within(scene.table_error, view, sky, self.kept)?;
                 let (error, seen) = seen(&tables, self.place, &sun, self.wanted)?;
                 Means::Solved { tables, error, seen }
@@ -83,16 +93,16 @@ fn seen<const L: usize>(
     tables: &Tables<L>,
     place: Place,
     sun: &SunDisc<L>,
-    wanted: &[DVec3],
+    wanted: &Wanted,
 ) -> Result<(f64, Vec<Panorama<L>>), SolveError> {
-    let error = tables.error(place, sun.direction());
+    let error = tables.error(place, sun.direction(), &wanted.judged);
     if error.is_nan() || error > MOST_ERROR {
         return Err(SolveError::Inexact(error));
     }
     let (least, most) = SHOWN;
     let shown = (SHARE * error).clamp(least, most);
     let suns = tables.solved.suns(place, sun).into_iter();
-    Ok((error, suns.map(|sun| Panorama::new(&tables.solved, place, sun, shown, wanted)).collect()))
+    Ok((error, suns.map(|sun| Panorama::new(&tables.solved, place, sun, shown, &wanted.shown)).collect()))
 }
 
 /// A packet of wavelengths, whatever the number of its lanes; slices are as long as
@@ -111,10 +121,12 @@ pub(super) trait Carrier: Debug + Send + Sync {
     fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool;
     fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]);
     fn table_error(&self) -> Option<f64>;
+    /// What a cheap method states of its own error.
+    fn stated(&self, from: Place) -> Option<Stated>;
     fn is_noiseless(&self) -> bool;
     fn bytes(&self) -> usize;
     /// Turns to another observer and sun.
-    fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError>;
+    fn turn(&mut self, from: Place, sun: DVec3, wanted: &Wanted) -> Result<(), SolveError>;
     /// A certificate of the solved table for its observer, of what is shown at so many wavelengths.
     fn certificate(&self, from: Place, shows: Shows, count: usize) -> Option<Box<dyn Certifies + '_>>;
 }
@@ -231,6 +243,11 @@ impl<const L: usize> Carrier for Lanes<L> {
         }
     }
 
+    fn stated(&self, from: Place) -> Option<Stated> {
+        let Means::Cheap(Some(cheap)) = &self.means else { return None };
+        cheap.stated(from, self.sun.direction())
+    }
+
     fn is_noiseless(&self) -> bool {
         !matches!(self.means, Means::Estimated(..))
     }
@@ -250,7 +267,7 @@ impl<const L: usize> Carrier for Lanes<L> {
         Some(Box::new(certify::Packet { solved, certificate, shows, count }))
     }
 
-    fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError> {
+    fn turn(&mut self, from: Place, sun: DVec3, wanted: &Wanted) -> Result<(), SolveError> {
         self.sun.turn(sun);
         if let Means::Solved { tables, error, seen: panoramas } = &mut self.means {
             (*error, *panoramas) = seen(tables, from, &self.sun, wanted)?;

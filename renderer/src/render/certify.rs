@@ -141,17 +141,21 @@ struct Looked {
     sums: Vec<Vec<(f64, f64)>>,
 }
 
-/// Directions of a picture, spread evenly over its pixels (R_2 of Roberts 2018), that see light.
-fn directions(camera: &Camera, (width, height): (u32, u32), packets: &[Box<dyn Certifies + '_>]) -> Vec<Looked> {
+/// Directions of a picture, spread evenly over its pixels (R_2 of Roberts 2018).
+pub(super) fn spread(camera: &Camera, (width, height): (u32, u32)) -> impl Iterator<Item = DVec3> {
     const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3];
     // Of the whole sphere a small part may be seen.
     const TRIES: u32 = 20_000;
-    let places = (0..TRIES).filter_map(|i| {
+    (0..TRIES).filter_map(move |i| {
         let [x, y] = STEPS.map(|step| (0.5 + step * f64::from(i + 1)).fract());
         let pixel = |share: f64, size: u32| (share * f64::from(size)).floor() + 0.5;
         camera.direction(pixel(x, width), pixel(y, height))
-    });
-    places.filter_map(|direction| look(direction, packets)).take(DIRECTIONS).collect()
+    })
+}
+
+/// Directions of a picture that see light.
+fn directions(camera: &Camera, size: (u32, u32), packets: &[Box<dyn Certifies + '_>]) -> Vec<Looked> {
+    spread(camera, size).filter_map(|direction| look(direction, packets)).take(DIRECTIONS).collect()
 }
 
 /// Looks at 128 directions of a picture of solved tables until it is clear, with 95 % confidence, whether their root mean square error

@@ -21,6 +21,7 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use carrier::MOST_ERROR as MOST_TABLE_ERROR;
 pub use certify::{Residual, Verdict, certify, certify_table};
 pub use disc::disc_layer;
 pub use merge::{MergeError, Merged};

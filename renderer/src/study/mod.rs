@@ -5,6 +5,7 @@ pub mod ladder;
 pub mod neutral_points;
 pub mod polarisation;
 pub mod solved;
+pub mod stability;
 pub mod strip;
 
 use std::fmt::Write;

@@ -74,7 +74,7 @@ pub fn suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
         let from = Place::above(EYE_M);
         // Any error is small enough for the usual tables, none for the finest.
         for (k, (error, [below, stated])) in [(f64::INFINITY, USUAL), (0.0, FINEST)].into_iter().enumerate() {
-            let high = (from, towards(90.0 - SUNS[0], 0.0));
+            let high = (from, towards(90.0 - SUNS[0], 0.0), &[] as &[_]);
             let tables = Tables::within(error, high, (&medium, SHAPE, ALBEDO, false), None)?;
             for (n, &elevation) in SUNS.iter().enumerate() {
                 let sun = towards(90.0 - elevation, 0.0);
@@ -84,7 +84,7 @@ pub fn suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
                 if let Some(verdict) = certify_table(&tables.solved, columns.clone(), (from, sun), &dome(), ROUNDS) {
                     verdict.errors.iter().for_each(|error| add(below, error.most));
                 }
-                add(stated, tables.error(from, sun));
+                add(stated, tables.error(from, sun, &[]));
                 let done = k as f64 + (n + 1) as f64 / SUNS.len() as f64;
                 progress((i as f64 + 0.5 * done) / all.len() as f64);
             }

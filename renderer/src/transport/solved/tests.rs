@@ -5,6 +5,7 @@ use super::*;
 use crate::atmosphere::Component;
 use crate::light::SunDisc;
 use crate::phase::Phase;
+use crate::sampling::spiral;
 use crate::transport::{Estimator, Problem};
 use tables::{Axis, Curve, Outside, Scale};
 
