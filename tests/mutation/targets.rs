@@ -163,6 +163,14 @@ pub fn targets() -> Vec<Target> {
         .to_json()
         .into_bytes();
     add("scene", Form::Text, true, scenes.into_iter().chain([full.clone()]).collect(), scene);
+    let toml = vec![file("scenes/sunset.toml"), Scene::default().to_toml(true).into_bytes()];
+    add("scene in TOML", Form::Text, true, toml, |bytes| {
+        Scene::from_toml(text(bytes)?).and_then(|scene| scene.validate()).map_err(|e| e.to_string())
+    });
+    add("scene of the thesis", Form::Text, true, vec![file("scenes/thesis.xml")], |bytes| {
+        let imported = Scene::from_mitsuba(text(bytes)?, Path::new("no such folder"));
+        imported.and_then(|imported| imported.scene.validate()).map_err(|e| e.to_string())
+    });
     let picture =
         [b"\x76\x2f\x31\x01\x02\0\0\0compression\0compression\0\x01\0\0\0\x03", b"airlight.scene\0string\0".as_slice()];
     let length = (full.len() as u32).to_le_bytes();

@@ -102,8 +102,8 @@ impl Scene {
             if self.date.is_some() && BY_DATE.contains(&key.as_str()) {
                 continue;
             }
-            let value = own.get(&key).filter(|value| !value.is_null());
-            let is_usual = own.get(&key) == usual.get(&key);
+            let value = own.get(key).filter(|value| !value.is_null());
+            let is_usual = own.get(key) == usual.get(key);
             if is_usual && !all {
                 continue;
             }

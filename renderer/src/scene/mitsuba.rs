@@ -78,6 +78,9 @@ fn fail<T>(line: usize, what: impl Into<String>) -> Result<T, SceneError> {
 /// How deep files may include each other.
 const MOST_INCLUDES: u32 = 16;
 
+/// How deep elements may lie in each other.
+const MOST_DEPTH: u32 = 32;
+
 /// The elements of a scene, defaults put in, included files in their place.
 fn read(
     text: &str,
@@ -99,7 +102,11 @@ fn read(
         node: roxmltree::Node<'_, '_>,
         line: &dyn Fn(roxmltree::Node<'_, '_>) -> usize,
         defaults: &BTreeMap<String, String>,
+        depth: u32,
     ) -> Result<Node, SceneError> {
+        if depth > MOST_DEPTH {
+            return fail(line(node), "elements within elements without end");
+        }
         let mut attributes = BTreeMap::new();
         for attribute in node.attributes() {
             let mut value = attribute.value().to_owned();
@@ -112,12 +119,12 @@ fn read(
             attributes.insert(attribute.name().to_owned(), value);
         }
         let children = node.children().filter(roxmltree::Node::is_element);
-        let children = children.map(|child| convert(child, line, defaults)).collect::<Result<_, _>>()?;
+        let children = children.map(|child| convert(child, line, defaults, depth + 1)).collect::<Result<_, _>>()?;
         Ok(Node { tag: node.tag_name().name().into(), line: line(node), attributes, children })
     }
     let mut nodes = Vec::new();
     for element in root.children().filter(roxmltree::Node::is_element) {
-        let node = convert(element, &line, defaults)?;
+        let node = convert(element, &line, defaults, 0)?;
         match node.tag.as_str() {
             "default" => {
                 // The first one counts: whoever includes a file decides.

@@ -3,6 +3,7 @@
 use super::Scene;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::Serialize;
+use std::sync::LazyLock;
 use tables::views::{AerosolSource, Biome};
 
 /// The schema of a scene (JSON Schema 2020-12): each key with its meaning, unit, range and default.
@@ -11,10 +12,13 @@ pub fn schema() -> Schema {
     schemars::schema_for!(Scene)
 }
 
-/// All keys of a scene.
-pub(super) fn keys() -> Vec<String> {
-    let properties = schema().get("properties").and_then(serde_json::Value::as_object).cloned();
-    properties.unwrap_or_default().into_iter().map(|(key, _)| key).collect()
+/// All keys of a scene, in the order of its fields.
+pub(super) fn keys() -> &'static [String] {
+    static KEYS: LazyLock<Vec<String>> = LazyLock::new(|| {
+        let properties = schema().get("properties").and_then(serde_json::Value::as_object).cloned();
+        properties.unwrap_or_default().into_iter().map(|(key, _)| key).collect()
+    });
+    &KEYS
 }
 
 /// One of some words.
