@@ -59,8 +59,16 @@ fn states_too_little(cell: &Cell) -> bool {
 fn axis(label: &str, places: &[String], most: usize) -> Axis {
     let every = places.len().div_ceil(most);
     let names = places.iter().enumerate().filter(|(i, _)| i.is_multiple_of(every));
-    let names = names.map(|(i, name)| (i as f64 + 0.5, name.replace('-', "\u{2212}")));
+    let names = names.map(|(i, name)| (i as f64 + 0.5, short(name).replace('-', "\u{2212}")));
     Axis::linear(label, 0.0, places.len() as f64, 1.0).named(names.collect())
+}
+
+/// A large number with its power of ten.
+fn short(name: &str) -> String {
+    match name.parse::<f64>() {
+        Ok(number) if number.abs() >= 1e4 => format!("{number:e}"),
+        _ => name.to_owned(),
+    }
 }
 
 fn panel(
@@ -92,10 +100,10 @@ fn panel(
     Panel { cells: Some(drawn), ..Panel::new(x, y, curves).titled(name.as_str()).key(Key::None) }
 }
 
-/// Edges between cells within their bounds and neighbours beyond theirs; breaks between them.
+/// Edges between cells within their bounds and neighbours beyond theirs, where the method answers; breaks between them.
 fn outline(cells: &[Cell]) -> Vec<(f64, f64)> {
     const BREAK: (f64, f64) = (f64::NAN, f64::NAN);
-    let beyond = |cell: &Cell| Some(cell.error? > cell.bound?);
+    let beyond = |cell: &Cell| Some(cell.error? > cell.bound?).filter(|_| !cell.refused);
     let mut edges = Vec::new();
     for a in cells {
         for b in cells {
