@@ -50,7 +50,6 @@ pub(super) struct Parts<'a> {
 impl Parts<'_> {
     pub(super) fn carry<const L: usize>(&self, packet: &Packet) -> Result<Box<dyn Carrier>, RenderError> {
         let nm: [f64; L] = self.wavelengths.lanes(packet);
-        let last = packet.range.end - 1;
         let (scene, polarised) = (self.scene, self.scene.is_polarised());
         let shape = if scene.flat { Shape::Flat } else { Shape::Sphere { radius_m: EARTH_RADIUS_M } };
         let medium = self.air.medium(&nm)?;
@@ -62,7 +61,7 @@ impl Parts<'_> {
             )
             .into());
         }
-        let albedo = std::array::from_fn(|lane| self.albedo[(packet.range.start + lane).min(last)]);
+        let albedo = std::array::from_fn(|lane| self.albedo[packet.index(lane)]);
         let sun = match scene.sun_shape {
             SunShape::Disc => {
                 SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius_at(scene.sun_distance_au))?

@@ -46,8 +46,16 @@ pub enum SpectrumError {
 pub struct Packet {
     /// Indices into the list.
     pub range: Range<usize>,
-    /// Lanes of the packet, 1, 8 or 16; those beyond the range repeat its last wavelength.
+    /// Lanes of the packet, 1, 8 or 16; those beyond the range repeat it.
     pub lanes: usize,
+}
+
+impl Packet {
+    /// Index into the list of a lane's wavelength.
+    #[must_use]
+    pub fn index(&self, lane: usize) -> usize {
+        self.range.start + lane % self.range.len()
+    }
 }
 
 impl Wavelengths {
@@ -97,10 +105,11 @@ impl Wavelengths {
         (0..n).step_by(size).map(|start| Packet { range: start..(start + size).min(n), lanes }).collect()
     }
 
-    /// The wavelengths in nm of a packet, the lanes beyond its range filled with its last.
+    /// The wavelengths in nm of a packet, those of its range again and again: paths choose a lane to fly by, and none is to be chosen much more
+    /// often than another.
     #[must_use]
     pub fn lanes<const L: usize>(&self, packet: &Packet) -> [f64; L] {
-        std::array::from_fn(|lane| self.0[(packet.range.start + lane).min(packet.range.end - 1)])
+        std::array::from_fn(|lane| self.0[packet.index(lane)])
     }
 }
 
@@ -208,6 +217,6 @@ mod tests {
         }
         let five = Wavelengths::visible(5).expect("valid");
         let lanes: [f64; 8] = five.lanes(&five.packets()[0]);
-        assert_eq!(lanes, [380.0, 480.0, 580.0, 680.0, 780.0, 780.0, 780.0, 780.0]);
+        assert_eq!(lanes, [380.0, 480.0, 580.0, 680.0, 780.0, 380.0, 480.0, 580.0]);
     }
 }

@@ -111,8 +111,8 @@ fn the_file_may_be_in_any_unit() {
 fn what_is_not_of_the_dialect_is_told_with_its_line() {
     let text = file(12.0, "");
     for (from, to, line, part) in [
-        ("PolarArticAerosol", "PolarArcticAerosol", 22, "PolarArticAerosol"),
-        ("name=\"month\"", "name=\"mont\"", 24, "mont"),
+        ("PolarArticAerosol", "PolarArcticAerosol", 21, "PolarArticAerosol"),
+        ("name=\"month\"", "name=\"mont\"", 23, "mont"),
         ("type=\"volpath\"", "type=\"path\"", 3, "volpath"),
         ("$n", "$m", 10, "no default"),
         ("value=\"170\"", "value=\"wide\"", 9, "a number is needed"),
