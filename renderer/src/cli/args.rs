@@ -9,6 +9,7 @@ use crate::render::Shard;
 use crate::scene::{Albedo, CameraKind, Scene, SceneError, SunShape, word};
 use crate::spectrum::{Scheme, Wavelengths};
 use crate::sweep::PATHS;
+use crate::transport::Fineness;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -83,6 +84,10 @@ pub(super) struct RenderArgs {
     /// finer; with aerosol 0.2% takes some five times as long [default: 1%]
     #[arg(long, value_name = "E", value_parser = share, help_heading = "Sampling")]
     pub table_error: Option<f64>,
+    /// Grid on which tables are solved, whatever they would state; no other is solved that tells their error, which takes a third less time
+    /// [default: as --table-error asks]
+    #[arg(long, value_name = "GRID", help_heading = "Sampling")]
+    pub fineness: Option<Fineness>,
     /// Wavelengths: how many from 380 to 780 nm, 1 to 1000, or a list in nm, 300 to 1000,
     /// increasing (450,550,650; a single one as 550.0) [default: 16]
     #[arg(long, value_name = "N|LIST", help_heading = "Sampling")]
@@ -123,6 +128,9 @@ pub(super) struct RenderArgs {
     /// [default: off; on without a word]
     #[arg(long, num_args = 0..=1, default_missing_value = "on", require_equals = true, help_heading = "Camera")]
     pub polarisation: Option<Switch>,
+    /// Follow light with its polarisation, but keep radiance alone in the picture [default: off; on without a word]
+    #[arg(long, num_args = 0..=1, default_missing_value = "on", require_equals = true, help_heading = "Camera")]
+    pub follow_polarisation: Option<Switch>,
     /// A polarising filter before the camera, its axis so many degrees from the horizontal of each pixel, anticlockwise as one
     /// looks, -360 to 360 [default: none]
     #[arg(long, value_name = "ANGLE", help_heading = "Camera")]
@@ -452,6 +460,9 @@ impl RenderArgs {
             polarisation: self
                 .polarisation
                 .map_or(base.polarisation && self.filter.is_none(), |switch| switch == Switch::On),
+            follow_polarisation: self
+                .follow_polarisation
+                .map_or(base.follow_polarisation, |switch| switch == Switch::On),
             filter_deg: self.filter.or(base.filter_deg.filter(|_| self.polarisation != Some(Switch::On))),
             colour: self.colour.unwrap_or(base.colour),
             method: self.method.map_or(base.method, Into::into),
@@ -466,6 +477,7 @@ impl RenderArgs {
             block: self.block.or(base.block).or(timed),
             error: self.error.or(base.error.filter(|_| !effort)),
             table_error: self.table_error.unwrap_or(base.table_error),
+            fineness: self.fineness.or(base.fineness.filter(|_| self.table_error.is_none())),
         };
         scene.validate()?;
         Ok(scene)

@@ -62,9 +62,12 @@ impl Parts<'_> {
             (Some(estimator), _) => Means::Estimated(estimator, Columns::new(&medium, shape, Tolerance::RENDER)),
             (None, Method::Solved) => {
                 let (view, sky) = ((self.place, self.sun_direction), (&medium, shape, albedo, polarised));
-                let tables = Tables::within(scene.table_error, view, sky, self.kept)?;
-                let (error, seen) = seen(&tables, self.place, &sun, self.wanted)?;
-                Means::Solved { tables, error, seen }
+                let tables = match scene.fineness {
+                    None => Tables::within(scene.table_error, view, sky, self.kept)?,
+                    Some(fineness) => Tables::alone(fineness, sky, self.kept)?,
+                };
+                let (error, seen) = seen(&tables, scene.table_error, (self.place, &sun), self.wanted)?;
+                Means::Solved { tables, asked: scene.table_error, error, seen }
             }
             (None, method) => Means::Cheap(Cheap::new(method, &medium, shape, albedo, scene.steps)),
         };
@@ -73,19 +76,20 @@ impl Parts<'_> {
     }
 }
 
-/// The error of tables for an observer and a sun, and what is seen with each of the suns that stand for the disc.
+/// The error that tables state for an observer and a sun, and what is seen with each of the suns that stand for the disc, as exactly as
+/// befits that error, or the `asked` one of tables that state none.
 fn seen<const L: usize>(
     tables: &Tables<L>,
-    place: Place,
-    sun: &SunDisc<L>,
+    asked: f64,
+    (place, sun): (Place, &SunDisc<L>),
     wanted: &[DVec3],
-) -> Result<(f64, Vec<Panorama<L>>), SolveError> {
+) -> Result<(Option<f64>, Vec<Panorama<L>>), SolveError> {
     let error = tables.error(place, sun.direction());
-    if error.is_nan() || error > MOST_ERROR {
+    if let Some(error) = error.filter(|error| error.is_nan() || *error > MOST_ERROR) {
         return Err(SolveError::Inexact(error));
     }
     let (least, most) = SHOWN;
-    let shown = (SHARE * error).clamp(least, most);
+    let shown = (SHARE * error.unwrap_or(asked)).clamp(least, most);
     let suns = tables.solved.suns(place, sun).into_iter();
     Ok((error, suns.map(|sun| Panorama::new(&tables.solved, place, sun, shown, wanted)).collect()))
 }
@@ -106,6 +110,7 @@ pub(super) trait Carrier: Debug + Send + Sync {
     fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool;
     fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]);
     fn table_error(&self) -> Option<f64>;
+    fn is_solved(&self) -> bool;
     fn is_noiseless(&self) -> bool;
     fn bytes(&self) -> usize;
     /// Turns to another observer and sun.
@@ -118,10 +123,12 @@ pub(super) trait Carrier: Debug + Send + Sync {
 #[derive(Debug)]
 enum Means<const L: usize> {
     Estimated(Estimator, Columns<L>),
-    /// With the error for this observer and this sun, and what is seen with each of the suns that stand for the disc.
+    /// With the error that was asked, the one stated for this observer and this sun, and what is seen with each of the suns that stand for
+    /// the disc.
     Solved {
         tables: Tables<L>,
-        error: f64,
+        asked: f64,
+        error: Option<f64>,
         seen: Vec<Panorama<L>>,
     },
     /// None behind a fitted sky, where only the sun is asked for.
@@ -221,9 +228,13 @@ impl<const L: usize> Carrier for Lanes<L> {
 
     fn table_error(&self) -> Option<f64> {
         match &self.means {
-            Means::Solved { error, .. } => Some(*error),
+            Means::Solved { error, .. } => *error,
             Means::Estimated(..) | Means::Cheap(_) => None,
         }
+    }
+
+    fn is_solved(&self) -> bool {
+        matches!(self.means, Means::Solved { .. })
     }
 
     fn is_noiseless(&self) -> bool {
@@ -250,8 +261,8 @@ impl<const L: usize> Carrier for Lanes<L> {
 
     fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError> {
         self.sun.turn(sun);
-        if let Means::Solved { tables, error, seen: panoramas } = &mut self.means {
-            (*error, *panoramas) = seen(tables, from, &self.sun, wanted)?;
+        if let Means::Solved { tables, asked, error, seen: panoramas } = &mut self.means {
+            (*error, *panoramas) = seen(tables, *asked, (from, &self.sun), wanted)?;
         }
         Ok(())
     }

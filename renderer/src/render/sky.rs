@@ -33,6 +33,7 @@ pub struct Sky {
     sun_direction: DVec3,
     identities: Vec<Identity>,
     shows: Shows,
+    polarised: bool,
     fitted: Option<Fitted>,
     turbidity: f64,
 }
@@ -145,6 +146,7 @@ impl Sky {
                 None if scene.polarisation => Shows::Stokes,
                 None => Shows::Radiance,
             },
+            polarised: scene.is_polarised(),
             fitted,
             turbidity,
         })
@@ -231,13 +233,13 @@ impl Sky {
     /// Whether light is followed with its polarisation.
     #[must_use]
     pub fn is_polarised(&self) -> bool {
-        !matches!(self.shows, Shows::Radiance)
+        self.polarised
     }
 
     /// Whether radiances come from solved tables, without noise.
     #[must_use]
     pub fn is_solved(&self) -> bool {
-        self.table_error().is_some()
+        !self.carriers.is_empty() && self.carriers.iter().all(|(_, carrier)| carrier.is_solved())
     }
 
     /// Whether equal directions give equal radiances.
@@ -252,7 +254,7 @@ impl Sky {
         self.carriers.iter().map(|(_, carrier)| carrier.bytes()).sum()
     }
 
-    /// Relative error of the solved tables as they state it themselves; `None` if there are none.
+    /// Relative error of the solved tables as they state it themselves; `None` if there are none, or of a grid that was chosen.
     #[must_use]
     pub fn table_error(&self) -> Option<f64> {
         let errors = self.carriers.iter().map(|(_, carrier)| carrier.table_error());

@@ -14,7 +14,7 @@ use crate::atmosphere::{Amount, Depolarisation, HazePhase, HazeSettings, OzoneSo
 use crate::camera::{Camera, Projection, direction_at};
 use crate::data::Data;
 use crate::spectrum::{Scheme, Wavelengths};
-use crate::transport::Method;
+use crate::transport::{Fineness, Method};
 use glam::DVec3;
 use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -107,6 +107,9 @@ pub struct Scene {
     /// ([`Camera::level`]), e2 upwards.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub polarisation: bool,
+    /// Whether light is followed with its polarisation though the picture keeps radiance alone, which it changes by up to some percent.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub follow_polarisation: bool,
     /// Axis of a polarising filter before the camera in degrees from e1 towards e2, -360 to 360: the picture is what passes.
     /// This and `polarisation` exclude each other.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -143,6 +146,9 @@ pub struct Scene {
     pub error: Option<f64>,
     /// Relative error that a solved table is to have, 1e-5 to 1: finer ones are solved until they state it or there is none finer.
     pub table_error: f64,
+    /// Grid on which tables are solved, with no other that tells their error; by `table_error` if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fineness: Option<Fineness>,
 }
 
 /// What the ground reflects: Lambertian.
@@ -186,6 +192,7 @@ impl Default for Scene {
             height: None,
             exposure_ev: None,
             polarisation: false,
+            follow_polarisation: false,
             filter_deg: None,
             method: Method::Solved,
             steps: None,
@@ -199,6 +206,7 @@ impl Default for Scene {
             block: None,
             error: None,
             table_error: 0.01,
+            fineness: None,
         }
     }
 }
@@ -256,7 +264,7 @@ impl Scene {
     /// Whether light is followed with its polarisation.
     #[must_use]
     pub fn is_polarised(&self) -> bool {
-        self.polarisation || self.filter_deg.is_some()
+        self.polarisation || self.follow_polarisation || self.filter_deg.is_some()
     }
 
     /// The first setting that says something of an aerosol, by its flag without dashes.
@@ -526,6 +534,8 @@ mod tests {
             "depolarisation",
             "sun_shape",
             "flat",
+            "fineness",
+            "follow_polarisation",
         ];
         assert!(newer.iter().all(|key| !json.contains(key)), "an old scene reads as before");
     }

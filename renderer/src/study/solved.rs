@@ -65,7 +65,7 @@ pub fn suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
                 if let Some(verdict) = certify_table(&tables.solved, columns.clone(), (from, sun), &dome(), ROUNDS) {
                     add(below, verdict.most);
                 }
-                add(stated, tables.error(from, sun));
+                add(stated, tables.error(from, sun).unwrap_or_default());
                 let done = k as f64 + (n + 1) as f64 / SUNS.len() as f64;
                 progress((i as f64 + 0.5 * done) / all.len() as f64);
             }

@@ -28,7 +28,7 @@ use crate::sampling::Sampler;
 use glam::DVec3;
 pub use radiation::Pair;
 use radiation::{Both, Polarised, Radiation, Scalar};
-pub use solved::{Certificate, Certified, FINER, Fan, Panorama, Resolution, SolveError, Solved, Tables};
+pub use solved::{Certificate, Certified, FINER, Fan, Fineness, Panorama, Resolution, SolveError, Solved, Tables};
 
 use serde::{Deserialize, Serialize};
 

@@ -36,7 +36,7 @@ mod tests;
 mod view;
 
 pub use certify::{Certificate, Certified, Fan};
-pub use grid::Resolution;
+pub use grid::{Fineness, Resolution};
 pub use panorama::Panorama;
 
 use crate::atmosphere::{Columns, Medium, MediumError, Tolerance};
@@ -164,6 +164,12 @@ impl Resolution {
     /// A coarser one, whose distance from [`Resolution::RENDER`] tells how far that is from the truth.
     pub const COARSE: Self = Self { levels: 12, suns: 30, zeniths: [4, 3, 3], parts: 4, degree: 14, change: 5e-4 };
 
+    /// Between [`Resolution::RENDER`] and [`Resolution::FINE`].
+    pub const MIDDLE: Self = Self { levels: 24, suns: 44, zeniths: [8, 4, 6], parts: 6, degree: 17, change: 3e-4 };
+
+    /// Finer than [`Resolution::FINE`] in everything: what the others are judged by.
+    pub const FINEST: Self = Self { levels: 40, suns: 64, zeniths: [12, 7, 9], parts: 12, degree: 24, change: 1e-4 };
+
     /// Where phase functions have peaks: higher moments want closer directions, layers more levels.
     fn peaked(self) -> Self {
         Self { levels: self.levels + 4, zeniths: self.zeniths.map(|n| n + n / 2), ..self }
@@ -175,8 +181,8 @@ impl Resolution {
 pub struct Tables<const L: usize> {
     /// The finest.
     pub solved: Solved<L>,
-    /// The next coarser, from which the error of the finest follows.
-    coarser: Solved<L>,
+    /// The next coarser, from which the error of the finest follows; none of a table whose grid was chosen.
+    coarser: Option<Solved<L>>,
     /// What the two do not show.
     hidden: f64,
 }
@@ -200,18 +206,31 @@ impl<const L: usize> Tables<L> {
         let coarser = Solved::of(air, &Resolution::COARSE, kept)?;
         let solved = coarser.again(&Resolution::RENDER, kept)?;
         let hidden = if solved.optics.moments.degree() > 2 { HIDDEN } else { 0.0 };
-        let usual = Self { solved, coarser, hidden };
-        if usual.error(from, sun) <= error {
+        let usual = Self { solved, coarser: Some(coarser), hidden };
+        if usual.error(from, sun).is_some_and(|stated| stated <= error) {
             return Ok(usual);
         }
         let solved = Solved::of(air, &Resolution::FINE, kept)?;
-        Ok(Self { solved, coarser: usual.solved, hidden: 0.0 })
+        Ok(Self { solved, coarser: Some(usual.solved), hidden: 0.0 })
     }
 
-    /// What the table states: how far it is off at an observer with the sun in that unit direction.
+    /// Solves on one grid alone, which then states no error.
+    ///
+    /// # Errors
+    /// As [`Solved::kept`].
+    pub fn alone(
+        fineness: Fineness,
+        air: (&Medium<L>, Shape, [f64; L], bool),
+        kept: Option<&Path>,
+    ) -> Result<Self, SolveError> {
+        Ok(Self { solved: Solved::of(air, &fineness.resolution(), kept)?, coarser: None, hidden: 0.0 })
+    }
+
+    /// What the table states: how far it is off at an observer with the sun in that unit direction; none of a grid alone.
     #[must_use]
-    pub fn error(&self, from: Place, sun: DVec3) -> f64 {
-        (FINER * self.solved.difference(&self.coarser, from, sun)).hypot(self.hidden)
+    pub fn error(&self, from: Place, sun: DVec3) -> Option<f64> {
+        let coarser = self.coarser.as_ref()?;
+        Some((FINER * self.solved.difference(coarser, from, sun)).hypot(self.hidden))
     }
 }
 
