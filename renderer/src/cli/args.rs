@@ -1,10 +1,11 @@
 //! Flags, and how they change a scene.
 
 use super::words::{
-    BiomeName, EstimatorName, MethodName, OzoneName, PhaseName, RenderMethod, Switch, TierName, biome, count, pixel,
-    share, time,
+    Asked, BiomeName, EstimatorName, MethodName, OzoneName, PhaseName, RenderMethod, Switch, TierName, asked, biome,
+    count, pixel, share, time,
 };
 use crate::atmosphere::Depolarisation;
+use crate::plan::Metric;
 use crate::render::Shard;
 use crate::scene::{Albedo, CameraKind, Scene, SceneError, SunShape, word};
 use crate::spectrum::{Scheme, Wavelengths};
@@ -56,9 +57,18 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "N", help_heading = "Sampling")]
     pub spp: Option<u32>,
     /// Go on until sqrt(mean squared standard error) over mean radiance, the solar disc left
-    /// out, is at most this, 1e-5 to 1: 1% or 0.01; 16 blocks of each pixel at least
-    #[arg(long, value_name = "E", value_parser = share, help_heading = "Sampling")]
-    pub error: Option<f64>,
+    /// out, is at most this, 1e-5 to 1: 1% or 0.01; 16 blocks of each pixel at least. With --auto, and of a plan, the error
+    /// that the picture is to have at most
+    #[arg(long, value_name = "E", value_parser = asked, help_heading = "Sampling")]
+    pub error: Option<Asked>,
+    /// Plan: take the cheapest method, grid and wavelengths that meet --error by stored measurements (`airlight plan` says which and why),
+    /// look at random pixels by unbiased paths, and go on with a more exact one if they show that it does not
+    #[arg(long, requires = "error", conflicts_with_all = ["method", "steps", "orders", "spp", "time", "block", "shard", "resume", "checkpoint",
+        "certify", "table_error", "fineness", "follow_polarisation", "pixel"], help_heading = "Sampling")]
+    pub auto: bool,
+    /// What the error of --auto and of a plan is of; of colour --error 1 is a unit of CIEDE2000 [default: radiance]
+    #[arg(long, value_name = "METRIC", requires = "error", help_heading = "Sampling")]
+    pub metric: Option<Metric>,
     /// Go on for so long, 1s to 1000h, in whole passes over the picture, two blocks of each pixel at least: 30s, 5m or
     /// 1.5h. The picture tells how many samples that were, so that it can be repeated
     #[arg(long, value_name = "T", value_parser = time, help_heading = "Sampling")]
@@ -84,8 +94,8 @@ pub(super) struct RenderArgs {
     /// finer; with aerosol 0.2% takes some five times as long [default: 1%]
     #[arg(long, value_name = "E", value_parser = share, help_heading = "Sampling")]
     pub table_error: Option<f64>,
-    /// Grid on which tables are solved, whatever they would state; no other is solved that tells their error, which takes a third less time
-    /// [default: as --table-error asks]
+    /// Grid on which tables are solved, whatever they would state; no other is solved that tells their error, which takes a third less time.
+    /// `airlight plan` chooses one by measured errors [default: as --table-error asks]
     #[arg(long, value_name = "GRID", help_heading = "Sampling")]
     pub fineness: Option<Fineness>,
     /// Wavelengths: how many from 380 to 780 nm, 1 to 1000, or a list in nm, 300 to 1000,
@@ -201,6 +211,16 @@ pub(super) struct PictureArgs {
     /// Say nothing but errors
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// Flags of `airlight plan`.
+#[derive(Debug, Args)]
+pub(super) struct PlanArgs {
+    #[command(flatten)]
+    pub render: RenderArgs,
+    /// Write the plan as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Flags of `airlight merge`.
@@ -333,15 +353,19 @@ pub(super) struct StudyArgs {
     /// What to study
     #[arg(value_name = "WHAT")]
     pub what: StudyName,
-    /// Of the ladder 18 scenes and the main settings alone, in some five minutes
+    /// Of the ladder 18 scenes and the main settings alone, in some five minutes; of plans and held-out the first ten atmospheres
     #[arg(long)]
     pub quick: bool,
+    /// Go on with plans or held-out where the study was stopped: atmospheres that are in the file stay
+    #[arg(long)]
+    pub resume: bool,
     /// CSV to write, or PNG [default: plots/airlight-WHAT.csv, or .png]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Where `polarisation` stores its measurements, which the program is built with (CSV)
-    #[arg(long, value_name = "FILE", default_value = "renderer/measured/polarisation.csv")]
-    pub measured: PathBuf,
+    /// Where `polarisation`, `atlas`, `plans` and `held-out` store their measurements, which the program is built with
+    /// [default: renderer/measured/WHAT.csv]
+    #[arg(long, value_name = "FILE")]
+    pub measured: Option<PathBuf>,
     /// Folder with the tables
     #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
@@ -367,6 +391,14 @@ pub(super) enum StudyName {
     Strip,
     /// Where clear skies have no polarisation over the sun's elevation: the points of Arago, Babinet and Brewster
     NeutralPoints,
+    /// What plans are made from: errors and costs of every rung on 280 scenes (15 core-minutes; each atmosphere is stored when it is done)
+    Plans,
+    /// The same of 102 other scenes, by which plans are judged (10 core-minutes)
+    HeldOut,
+    /// How good plans are: those of the held-out scenes beside what is true, by what is stored
+    Planner,
+    /// What leaving out each part of the model changes, on thirty scenes (6 core-minutes)
+    Atlas,
     /// What leaving polarisation out costs over the sun's elevation, in clear air and the nine biomes: scalar beside polarised radiance
     Polarisation,
 }
@@ -379,6 +411,10 @@ impl StudyName {
             Self::SolvedSuns => "solved-suns",
             Self::SolvedGrids => "solved-grids",
             Self::Strip => "strip",
+            Self::Plans => "plans",
+            Self::HeldOut => "held-out",
+            Self::Planner => "planner",
+            Self::Atlas => "atlas",
             Self::NeutralPoints => "neutral-points",
             Self::Polarisation => "polarisation",
         }
@@ -426,6 +462,8 @@ impl RenderArgs {
         // An amount on the command line replaces that of the scene, of whichever kind; so does no aerosol at all.
         let none = biome.is_none() && self.aerosol.biome.is_some();
         let amount = none || self.aerosol.aod.or(self.aerosol.visibility).or(self.aerosol.turbidity).is_some();
+        // The error of a plan is none of samples.
+        let planned = self.auto || self.metric.is_some();
         // So does an effort.
         let effort = self.spp.is_some() || self.error.is_some() || self.time.is_some();
         let timed = self.time.filter(|_| self.error.is_none()).map(|_| TIMED_BLOCK);
@@ -475,7 +513,7 @@ impl RenderArgs {
             seed: self.seed.unwrap_or(base.seed),
             spp: self.spp.or(base.spp.filter(|_| !effort)),
             block: self.block.or(base.block).or(timed),
-            error: self.error.or(base.error.filter(|_| !effort)),
+            error: self.error.filter(|_| !planned).map(|error| error.share).or(base.error.filter(|_| !effort)),
             table_error: self.table_error.unwrap_or(base.table_error),
             fineness: self.fineness.or(base.fineness.filter(|_| self.table_error.is_none())),
         };

@@ -5,10 +5,12 @@
 //! be, 130 stopped by Ctrl-C (what was there is written first).
 
 mod args;
+mod auto;
 mod bench;
 mod merge;
 mod output;
 mod picture;
+mod plan;
 mod progress;
 mod radiance;
 mod render;
@@ -26,6 +28,9 @@ use std::process::ExitCode;
 enum Command {
     /// Render a picture: EXR to calculate with, PNG to look at
     Render(Box<args::RenderArgs>),
+    /// Say how a picture is made cheapest within an error, by stored measurements: method, wavelengths, what is left out and why that may be.
+    /// Takes the flags of render
+    Plan(Box<args::PlanArgs>),
     /// Put runs with different seeds or shards together as one picture
     Merge(args::MergeArgs),
     /// Answer a file of reference cases: radiances with their standard errors
@@ -71,6 +76,7 @@ impl From<SceneError> for Failure {
 pub fn main() -> ExitCode {
     let outcome = match Command::parse() {
         Command::Render(args) => render::run(&args),
+        Command::Plan(args) => plan::run(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Radiance(args) => radiance::run(&args),
         Command::Bench(args) => bench::run(&args),

@@ -6,7 +6,7 @@ use super::output::println;
 use super::progress::{amount, duration, percent, size};
 use crate::film::{DiscLayer, Estimate, Picture, exr, png, tone};
 use crate::render::left_out::{LeftOut, Off};
-use crate::render::{Head, Part, Rendering, Shard, Sky, State, Summary, Verdict, receipt};
+use crate::render::{Achieved, Head, Part, Rendering, Shard, Sky, State, Summary, Verdict, receipt};
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
 use crate::transport::Method;
@@ -71,6 +71,8 @@ pub(super) struct Product<'a> {
     pub(super) head: Head,
     /// What a certificate says of the tables.
     pub(super) verdict: Option<Verdict>,
+    /// What a planned picture has achieved.
+    pub(super) achieved: Option<Achieved>,
 }
 
 impl Product<'_> {
@@ -82,10 +84,17 @@ impl Product<'_> {
         begin: Instant,
         pool: &rayon::ThreadPool,
     ) -> Result<(), Failure> {
-        let Self { scene, sky, summary, disc, rendering, head, verdict } = self;
+        let Self { scene, sky, summary, disc, rendering, head, verdict, achieved } = self;
         let picture = Picture { film: &rendering.film, disc, colour: sky.colour() };
         let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(&picture));
-        let attributes = receipt::receipt(scene, sky, &head.parts, rendering, summary, exposure_ev, verdict.as_ref());
+        let attributes = receipt::receipt(
+            scene,
+            sky,
+            &head.parts,
+            rendering,
+            (summary, exposure_ev),
+            (verdict.as_ref(), achieved.as_ref()),
+        );
         let spectral = (args.spectral || scene.polarisation).then(|| scene.wavelengths());
         let exr = exr::encode(&picture, spectral.as_ref().map(Wavelengths::nm), &attributes).map_err(Failure::error)?;
         let png = png::encode(&picture, exposure_ev).map_err(Failure::error)?;
@@ -109,6 +118,9 @@ impl Product<'_> {
             }
             if let Some(verdict) = verdict {
                 describe_verdict(verdict, sky.sun_direction());
+            }
+            if let Some(achieved) = achieved {
+                println!("achieved    {}", super::auto::words(achieved));
             }
             println!(
                 "time        {} on {} threads",
