@@ -5,7 +5,7 @@ use super::output::println;
 use super::progress::amount;
 use super::{Failure, Outcome};
 use crate::data::Data;
-use crate::plan::{Atlas, Candidate, Evidence, Measured, Metric, Plan, Safe, Spectrum, Traits, outside};
+use crate::plan::{Atlas, Candidate, Difference, Evidence, Measured, Metric, Plan, Safe, Spectrum, Traits, outside};
 use crate::render::Sky;
 use crate::scene::Scene;
 use crate::transport::Method;
@@ -134,7 +134,9 @@ fn negligible(plan: &Plan) -> Vec<String> {
     }
     let Ok(atlas) = Atlas::stored() else { return Vec::new() };
     let near = atlas.near(&plan.traits);
-    let small = near.into_iter().filter(|row| row.is_of_the_world());
+    // Clear air has no aerosol to say anything of.
+    let speaks = |row: &&Difference| plan.traits.biome.is_some() || !row.term.starts_with("aerosol");
+    let small = near.into_iter().filter(|row| row.is_of_the_world()).filter(speaks);
     let small =
         small.map(|row| (row, row.change[plan.metric as usize])).filter(|(_, change)| *change < SHARE * plan.asked);
     small.map(|(row, change)| format!("negligible  {}: {}", row.term, plan.metric.show(change))).collect()
@@ -170,4 +172,37 @@ fn json(plan: &Plan, scene: &Scene) -> String {
         "scene": planned.portable(),
     });
     value.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Measured;
+
+    fn lines(scene: &Scene, traits: &Traits, asked: f64, metric: Metric) -> Vec<String> {
+        let evidence = Evidence::new(&Measured::stored().expect("parses")).expect("enough");
+        let plan = Plan::of(&evidence, scene, (traits, outside(scene, traits)), asked, metric);
+        serde_json::from_str::<serde_json::Value>(&json(&plan, scene)).expect("JSON");
+        describe(&plan, scene)
+    }
+
+    #[test]
+    fn a_plan_says_what_is_left_out_with_its_number() {
+        let scene = Scene::default();
+        let clear =
+            Traits { biome: None, optical_depth: 0.0, sun_elevation_deg: 30.0, altitude_km: 0.002, albedo: 0.1 };
+        for (asked, metric) in [(0.05, Metric::Luminance), (0.01, Metric::Radiance), (1.0, Metric::Colour)] {
+            let lines = lines(&scene, &clear, asked, metric);
+            let has = |start: &str| lines.iter().any(|line| line.starts_with(start));
+            for start in ["asked", "method", "wavelengths", "predicted", "cost", "left out", "negligible", "render"] {
+                assert!(has(start), "{start}: {lines:?}");
+            }
+        }
+        let low = Traits { sun_elevation_deg: -10.0, ..clear };
+        let scene = Scene { sun_elevation_deg: -10.0, ..scene };
+        let lines = lines(&scene, &low, 0.01, Metric::Radiance);
+        assert!(
+            lines[1].contains("the sun below -8 degrees") && !lines.iter().any(|line| line.starts_with("predicted"))
+        );
+    }
 }

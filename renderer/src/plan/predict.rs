@@ -2,7 +2,7 @@
 
 use super::kriging::{Fit, Kriging};
 use super::measured::{Costs, Measured};
-use super::{Candidate, Metric, SPECTRUM, Spectrum, Traits, Transfer};
+use super::{Candidate, Metric, Spectrum, Traits, Transfer};
 use crate::render::PACKETS;
 use crate::scene::Scene;
 use crate::transport::{Fineness, Method};
@@ -377,9 +377,11 @@ impl Plan {
                 with(Transfer { fineness: transfer.fineness.or(Some(Fineness::Coarse)), polarised: true }, spectrum),
             ));
         }
-        if spectrum != Spectrum::Even31 {
+        // Radiance is asked at sixteen wavelengths.
+        let all = if self.metric == Metric::Radiance { Spectrum::Even16 } else { Spectrum::Even31 };
+        if spectrum != all && spectrum != Spectrum::Even31 {
             let count = spectrum.places().len();
-            lines.push((format!("wavelengths ({count} of {SPECTRUM})"), with(transfer, Spectrum::Even31)));
+            lines.push((format!("wavelengths ({count} of {})", all.places().len()), with(transfer, all)));
         }
         lines
     }
