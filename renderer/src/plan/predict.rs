@@ -185,7 +185,7 @@ fn left_out(measured: &Measured) -> Result<Vec<Prediction>, String> {
 }
 
 /// Margins of the metrics: every scene is predicted from the atmospheres other than its own, and for each of [`ASKED`] a rung is chosen for it as a
-/// plan would; the margin is the least with which [`SURE`] of the choices meet what was asked.
+/// plan would; the margin is the least with which 97 % of the choices meet what was asked.
 ///
 /// # Errors
 /// A sentence, if there are fewer than two atmospheres.
