@@ -71,8 +71,8 @@ struct Node {
     children: Vec<Node>,
 }
 
-fn fail<T>(line: usize, what: impl Into<String>) -> Result<T, SceneError> {
-    Err(SceneError::File { line, what: what.into() })
+fn fail<T>(line: usize, what: impl AsRef<str>) -> Result<T, SceneError> {
+    Err(SceneError::File { line, what: excerpt(what.as_ref()) })
 }
 
 /// How deep files may include each other.
