@@ -84,6 +84,12 @@ pub enum DataError {
 }
 
 impl Data {
+    /// The same with the sun at another distance than 1 au.
+    #[must_use]
+    pub fn with_sun_at(&self, distance_au: f64) -> Self {
+        Self { sun: self.sun.at_distance(distance_au), ..self.clone() }
+    }
+
     /// Reads every kind of table from `folder`; aerosols when they are asked for.
     ///
     /// # Errors

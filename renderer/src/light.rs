@@ -15,7 +15,13 @@ pub const ASTRONOMICAL_UNIT_M: f64 = 149_597_870_700.0;
 /// Angular radius of the sun seen from 1 au in radians, asin(R / au): 0.26645 degrees.
 #[must_use]
 pub fn solar_angular_radius() -> f64 {
-    (SOLAR_RADIUS_M / ASTRONOMICAL_UNIT_M).asin()
+    solar_angular_radius_at(1.0)
+}
+
+/// Angular radius of the sun in radians seen from so many astronomical units, asin(R / d).
+#[must_use]
+pub fn solar_angular_radius_at(distance_au: f64) -> f64 {
+    (SOLAR_RADIUS_M / (distance_au * ASTRONOMICAL_UNIT_M)).asin()
 }
 
 /// The sun seen from one place, normalised to unit irradiance in each of L wavelengths.

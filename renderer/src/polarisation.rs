@@ -105,11 +105,26 @@ const BEYOND: f64 = 0.02;
 /// The square of the sine of an angle of scattering below which the plane of scattering is not told from rounding.
 const STRAIGHT: f64 = 1e-20;
 
+/// A horizontal unit vector across the unit `direction`, towards growing azimuth about the unit vector `up`; any that is across a
+/// vertical direction.
+#[must_use]
+#[inline]
+pub fn horizontal(up: DVec3, direction: DVec3) -> DVec3 {
+    let across = up.cross(direction);
+    if across.length_squared() > 1e-16 { across.normalize() } else { direction.any_orthonormal_vector() }
+}
+
 impl Frame {
     /// The frame of light out of the unit `direction` with e1 along the unit vector `first`, which is perpendicular to it.
     #[must_use]
     pub fn new(direction: DVec3, first: DVec3) -> Self {
         Self { e2: direction.cross(first) }
+    }
+
+    /// The frame of light out of the unit `direction` with e1 horizontal where `up` is the vertical ([`horizontal`]).
+    #[must_use]
+    pub fn level(up: DVec3, direction: DVec3) -> Self {
+        Self::new(direction, horizontal(up, direction))
     }
 
     /// The frame of a plane of scattering: of light that came out of `before` and was scattered so that it comes out of
@@ -326,6 +341,14 @@ impl Analyser {
     #[inline]
     pub fn natural(&self, light: f64) -> Stokes {
         let [i, q, u] = self.rows.map(|[i, ..]| i * light);
+        Stokes { i, q, u }
+    }
+
+    /// Light without V, referred to the analyser's frame.
+    #[must_use]
+    #[inline]
+    pub fn see(&self, light: &Stokes) -> Stokes {
+        let [i, q, u] = self.rows.map(|[i, q, u, _]| i * light.i + q * light.q + u * light.u);
         Stokes { i, q, u }
     }
 

@@ -1,10 +1,43 @@
 //! Arithmetic on arrays in forms that compilers turn into vector instructions.
 
 use pulp::NullaryFnOnce;
+use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Does `work` with the widest vectors of this processor; all that it calls is to be inlined. Nothing is fused or
-/// reordered, so that the results do not depend on the width.
-pub(crate) fn vectorised<W: NullaryFnOnce>(work: W) -> W::Output {
+/// Which vectors are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Vectors {
+    /// Those that every processor of the kind has.
+    Plain,
+    /// 256 bits (AVX2).
+    Avx2,
+    /// The widest of this processor.
+    Widest,
+}
+
+static WIDEST: AtomicU8 = AtomicU8::new(Vectors::Widest as u8);
+
+/// Takes no wider vectors from now on: for measurements. Results are the same.
+pub(crate) fn take_at_most(vectors: Vectors) {
+    WIDEST.store(vectors as u8, Ordering::Relaxed);
+}
+
+/// Does `work` on `L` wavelengths with the widest vectors of this processor; all that it calls is to be inlined. Nothing is fused or
+/// reordered, so that the results do not depend on the width. One wavelength has nothing to fill vectors with.
+pub(crate) fn vectorised<const L: usize, W: NullaryFnOnce>(work: W) -> W::Output {
+    if const { L == 1 } {
+        return work.call();
+    }
+    let widest = WIDEST.load(Ordering::Relaxed);
+    if widest == Vectors::Plain as u8 {
+        return work.call();
+    }
+    #[cfg(target_arch = "x86_64")]
+    if widest == Vectors::Avx2 as u8
+        && let Some(processor) = pulp::x86::V3::try_new()
+    {
+        return pulp::Simd::vectorize(processor, work);
+    }
     pulp::Arch::new().dispatch(work)
 }
 

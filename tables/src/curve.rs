@@ -52,6 +52,12 @@ impl Curve {
         &self.values
     }
 
+    /// All values times a positive `factor`, which no scale minds.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        Self { values: self.values.iter().map(|value| factor * value).collect(), ..self.clone() }
+    }
+
     /// The value at coordinate `x`, in the field's unit: between nodes a and b,
     /// at the fraction f, v = (1-f) v_a + f v_b, or v_a^(1-f) v_b^f on a
     /// logarithmic scale.

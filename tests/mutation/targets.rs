@@ -25,6 +25,9 @@ const FREE: usize = 1 << 20;
 /// The same for what judges a file.
 const JUDGED: usize = 1 << 26;
 
+/// The same for what is read as a tree: the longest inputs are a quarter of a megabyte.
+const TREE: usize = 1 << 24;
+
 /// A reader.
 pub struct Target {
     /// Its name in reports and on the command line.
@@ -163,6 +166,14 @@ pub fn targets() -> Vec<Target> {
         .to_json()
         .into_bytes();
     add("scene", Form::Text, true, scenes.into_iter().chain([full.clone()]).collect(), scene);
+    let toml = vec![file("scenes/sunset.toml"), Scene::default().to_toml(true).into_bytes()];
+    add("scene in TOML", Form::Text, true, toml, |bytes| {
+        Scene::from_toml(text(bytes)?).and_then(|scene| scene.validate()).map_err(|e| e.to_string())
+    });
+    add("scene of the thesis", Form::Text, true, vec![file("scenes/thesis.xml")], |bytes| {
+        let imported = Scene::from_mitsuba(text(bytes)?, Path::new("no such folder"));
+        imported.and_then(|imported| imported.scene.validate()).map_err(|e| e.to_string())
+    });
     let picture =
         [b"\x76\x2f\x31\x01\x02\0\0\0compression\0compression\0\x01\0\0\0\x03", b"airlight.scene\0string\0".as_slice()];
     let length = (full.len() as u32).to_le_bytes();
@@ -178,6 +189,10 @@ pub fn targets() -> Vec<Target> {
     // that it finds in them.
     for target in list.iter_mut().filter(|target| target.name == "lint csv") {
         target.free = JUDGED;
+    }
+    // A tree takes some fifty times its text: a node for every few bytes.
+    for target in list.iter_mut().filter(|target| matches!(target.name, "scene of the thesis" | "scene in TOML")) {
+        target.free = TREE;
     }
     list
 }

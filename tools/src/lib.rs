@@ -32,6 +32,7 @@ pub mod raw;
 pub mod records;
 pub mod sheet;
 pub mod sources;
+pub mod stability;
 #[cfg(feature = "study")]
 pub mod study;
 pub mod text;

@@ -8,7 +8,7 @@ use tables::views::{OzoneCrossSection, OzoneProfile, REFERENCE_WAVELENGTH_NM, Ra
 use tables::{Axis, Curve, Interpolation, Outside, Scale, TableError};
 
 /// Which measured ozone profile is taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum OzoneSource {
     /// McPeters-Labow climatology, by month and latitude.
@@ -19,7 +19,7 @@ pub enum OzoneSource {
 }
 
 /// How molecules scatter.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Depolarisation {
     /// With the depolarisation of air (King factor of Bucholtz 1995)

@@ -28,7 +28,7 @@ pub enum Amount {
 }
 
 /// Where aerosol scatters to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum HazePhase {
     /// The phase function of Mie theory from the table.

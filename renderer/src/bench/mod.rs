@@ -6,6 +6,7 @@
 //! about 25 km, absorbing. Aerosol, in the last case: tau = 0.2 at 550 nm, albedo 0.92, scale height 1.2 km,
 //! Henyey-Greenstein 0.76. All as a table of 200 cells, linear between their centres.
 
+pub mod certificates;
 pub mod polarised;
 pub mod solved;
 

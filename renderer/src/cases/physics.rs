@@ -7,7 +7,7 @@ use crate::light::SunDisc;
 use crate::phase::Phase;
 use crate::polarisation::{Frame, Stokes};
 use crate::sampling::{Sampler, cosine_hemisphere};
-use crate::transport::{self, Estimator, FINER, Method, Problem, Resolution, SolveError, Solved};
+use crate::transport::{self, Estimator, FINER, Method, Problem, Resolution, SolveError, Solved, covers_planet};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -57,6 +57,7 @@ impl Pair {
         if single {
             return Ok(Self { solved: Solved::single(medium, shape, [albedo])?, coarse: None });
         }
+        covers_planet(shape)?;
         let fine = Resolution::FINE;
         let coarser = Resolution { degree: fine.degree, ..Resolution::RENDER };
         let solve = if polarised { Solved::polarised } else { Solved::new };
@@ -279,6 +280,9 @@ impl Shared {
     }
 }
 
+/// Radii in km over which column tables keep their transmittances (`airlight study stability`, planets-columns).
+const PLANETS_KM: (f64, f64) = (10.0, 1e7);
+
 /// The planet's form and the atmosphere of a case.
 fn air(case: &Case, profiles: &BTreeMap<String, Profile>) -> Result<(Shape, Medium<1>), String> {
     match case.geometry.as_str() {
@@ -288,7 +292,7 @@ fn air(case: &Case, profiles: &BTreeMap<String, Profile>) -> Result<(Shape, Medi
         }
         "spherical" => {
             let radius_m = case.planet_radius_km.map_or(EARTH_RADIUS_M, |km| km * KM);
-            ranged("planet_radius_km", radius_m / KM, f64::MIN_POSITIVE, 1e9)?;
+            ranged("planet_radius_km", radius_m / KM, PLANETS_KM.0, PLANETS_KM.1)?;
             let name = case.profile.as_ref().ok_or("a spherical case needs a profile")?;
             let profile = profiles.get(name).ok_or_else(|| format!("no profile named {name:?} in the file"))?;
             Ok((Shape::Sphere { radius_m }, spherical(profile, case.phase.as_deref())?))

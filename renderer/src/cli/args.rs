@@ -7,11 +7,12 @@ use super::words::{
 use crate::atmosphere::Depolarisation;
 use crate::plan::Metric;
 use crate::render::Shard;
-use crate::scene::{Albedo, CameraKind, Scene, SceneError, SunShape, word};
+use crate::scene::{Albedo, CameraKind, Moment, Scene, SceneError, SunShape, word};
 use crate::spectrum::{Scheme, Wavelengths};
 use crate::sweep::PATHS;
 use crate::transport::Fineness;
-use clap::{Args, ValueEnum};
+use crate::vectors::Vectors;
+use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
 use tables::views::AerosolSource;
@@ -20,7 +21,7 @@ use tables::views::AerosolSource;
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub(super) struct RenderArgs {
-    /// Scene to start from: JSON, or the EXR file of a picture, which carries it; flags override it
+    /// Scene to start from: TOML (`airlight scene new`), JSON, or the EXR file of a picture, which carries it; flags override it
     #[arg(value_name = "SCENE")]
     pub scene: Option<PathBuf>,
     #[command(flatten)]
@@ -87,7 +88,8 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Sampling")]
     pub threads: Option<u16>,
     /// Look at 128 directions of the picture by unbiased estimates that end in the solved table, until it is clear with 95 %
-    /// confidence whether the table's rms error is below E, 1e-5 to 1 [default without E: 0.1%]
+    /// confidence whether the table's rms error is below E, 1e-5 to 1: with --polarisation that of I and those of Q and U relative to I,
+    /// with --filter that of what passes [default without E: 0.1%]
     #[arg(long, value_name = "E", value_parser = share, num_args = 0..=1, default_missing_value = "0.1%", require_equals = true, help_heading = "Sampling")]
     pub certify: Option<f64>,
     /// Relative error (rms) that solved tables are to have, 1e-5 to 1: finer ones are solved until they state it, or there is none
@@ -155,6 +157,16 @@ pub(super) struct RenderArgs {
     /// Azimuth of the sun in degrees clockwise from north, -360 to 360 [default: 180]
     #[arg(long, value_name = "DEG", help_heading = "Sun, air and ground")]
     pub sun_azimuth: Option<f64>,
+    /// An instant that says where the sun stands at --latitude and --longitude, how far it is, and the month:
+    /// 2026-06-21T18:30:00+02:00, or Z for UTC
+    #[arg(long, value_name = "INSTANT", conflicts_with_all = ["sun_elevation", "sun_azimuth", "sun_distance", "month"], help_heading = "Sun, air and ground")]
+    pub date: Option<Moment>,
+    /// Longitude in degrees, east positive, -180 to 180, with --date
+    #[arg(long, value_name = "DEG", help_heading = "Sun, air and ground")]
+    pub longitude: Option<f64>,
+    /// Distance of the sun in astronomical units, 0.9 to 1.1 [default: 1]
+    #[arg(long, value_name = "AU", help_heading = "Sun, air and ground")]
+    pub sun_distance: Option<f64>,
     /// Whether the disc itself is drawn; it gives light either way [default: on]
     #[arg(long, help_heading = "Sun, air and ground")]
     pub sun_disc: Option<Switch>,
@@ -174,7 +186,7 @@ pub(super) struct RenderArgs {
     /// Month, 1 to 12, which ozone goes by [default: 6]
     #[arg(long, value_name = "1..12", help_heading = "Sun, air and ground")]
     pub month: Option<u8>,
-    /// Latitude in degrees, north positive, -90 to 90, which ozone goes by [default: 45]
+    /// Latitude in degrees, north positive, -90 to 90, which ozone goes by, and with --date the sun [default: 45]
     #[arg(long, value_name = "DEG", help_heading = "Sun, air and ground")]
     pub latitude: Option<f64>,
     /// Ozone column in Dobson units, 0 to 1000 [default: that of the month and latitude]
@@ -304,6 +316,40 @@ pub(super) struct RadianceArgs {
     pub quiet: bool,
 }
 
+/// What `airlight scene` does.
+#[derive(Debug, Subcommand)]
+pub(super) enum SceneCommand {
+    /// Write a scene file with every key, its meaning, unit, range and default, to be filled in
+    New {
+        /// File to write, which must not be there; standard output if none is given
+        #[arg(value_name = "FILE.toml")]
+        file: Option<PathBuf>,
+    },
+    /// Say whether scene files can be rendered, and with which tables
+    Check {
+        /// Scenes: TOML, JSON, or the EXR files of pictures
+        #[arg(value_name = "SCENE", required = true)]
+        scenes: Vec<PathBuf>,
+        /// Folder with the tables
+        #[arg(long, value_name = "DIR", default_value = "data")]
+        data: PathBuf,
+    },
+    /// Show a scene, or that of a picture, as TOML: the keys that are not at their defaults
+    Show {
+        /// Scene: TOML, JSON, or the EXR file of a picture
+        #[arg(value_name = "SCENE")]
+        scene: PathBuf,
+        /// Every key, with its meaning
+        #[arg(long)]
+        all: bool,
+        /// As JSON
+        #[arg(long, conflicts_with = "all")]
+        json: bool,
+    },
+    /// Print the JSON schema of scene files, for editors
+    Schema,
+}
+
 /// Flags of `airlight bench`.
 #[derive(Debug, Args)]
 pub(super) struct BenchArgs {
@@ -319,12 +365,35 @@ pub(super) struct BenchArgs {
     /// Folder with the tables
     #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
-    /// Biomes beside which solved tables are put, or in which polarised transfer is measured: one, none or all
+    /// Biomes beside which solved tables are put, or in which polarised transfer or certificates are measured: one, none or all
     #[arg(long, value_name = "NAME", default_value = "all")]
     pub biome: String,
     /// Least time for each direction in seconds
     #[arg(long, value_name = "S", default_value_t = 1.0)]
     pub seconds: f64,
+    /// Widest vectors that are taken (of x86-64)
+    #[arg(long, value_name = "KIND", default_value = "widest")]
+    pub vectors: VectorsName,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum VectorsName {
+    /// 128 bits: what every processor has
+    Plain,
+    /// 256 bits
+    Avx2,
+    /// What this processor has
+    Widest,
+}
+
+impl From<VectorsName> for Vectors {
+    fn from(name: VectorsName) -> Self {
+        match name {
+            VectorsName::Plain => Self::Plain,
+            VectorsName::Avx2 => Self::Avx2,
+            VectorsName::Widest => Self::Widest,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -345,6 +414,8 @@ pub(super) enum BenchName {
     Solved,
     /// Polarised beside scalar transfer in clear air and in every biome
     Polarised,
+    /// Certificates of polarised light beside those of radiance alone in clear air and in every biome
+    Certificates,
 }
 
 /// Flags of `airlight study`.
@@ -353,7 +424,8 @@ pub(super) struct StudyArgs {
     /// What to study
     #[arg(value_name = "WHAT")]
     pub what: StudyName,
-    /// Of the ladder 18 scenes and the main settings alone, in some five minutes; of plans and held-out the first ten atmospheres
+    /// Of the ladder 18 scenes and the main settings alone, in some five minutes; of stability fewer cells, in one or two; of plans and
+    /// held-out the first ten atmospheres
     #[arg(long)]
     pub quick: bool,
     /// Go on with plans or held-out where the study was stopped: atmospheres that are in the file stay
@@ -383,10 +455,14 @@ pub(super) enum StudyName {
     Columns,
     /// Solved tables of clear air and the nine biomes: error over the sun's elevation, by certificates
     SolvedSuns,
+    /// As solved-suns, by day, of polarised light: errors of I, Q and U relative to I
+    PolarisedSuns,
     /// Solved tables: error against the time to solve, for grids, moments and orders
     SolvedGrids,
     /// Every method: error against cost over 60 scenes, from day to twilight, from the ground to space (an hour on two cores)
     Ladder,
+    /// Where each method leaves its error bound: maps over sun and haze, altitude and view, asymmetry, radius, wavelength, steps, mappings
+    Stability,
     /// Skies from one solution, the sun from 60 to -12 degrees, with the time of each: a strip of fisheyes (PNG)
     Strip,
     /// Where clear skies have no polarisation over the sun's elevation: the points of Arago, Babinet and Brewster
@@ -409,7 +485,9 @@ impl StudyName {
             Self::Columns => "columns",
             Self::Ladder => "ladder",
             Self::SolvedSuns => "solved-suns",
+            Self::PolarisedSuns => "polarised-suns",
             Self::SolvedGrids => "solved-grids",
+            Self::Stability => "stability",
             Self::Strip => "strip",
             Self::Plans => "plans",
             Self::HeldOut => "held-out",
@@ -467,11 +545,16 @@ impl RenderArgs {
         // So does an effort.
         let effort = self.spp.is_some() || self.error.is_some() || self.time.is_some();
         let timed = self.time.filter(|_| self.error.is_none()).map(|_| TIMED_BLOCK);
+        // The sun on the command line replaces the date of the scene.
+        let moved = self.sun_elevation.or(self.sun_azimuth).or(self.sun_distance).is_some() || self.month.is_some();
         let scene = Scene {
             altitude_km: self.altitude.unwrap_or(base.altitude_km),
             top_km: self.top.unwrap_or(base.top_km),
             sun_elevation_deg: self.sun_elevation.unwrap_or(base.sun_elevation_deg),
             sun_azimuth_deg: self.sun_azimuth.unwrap_or(base.sun_azimuth_deg),
+            sun_distance_au: self.sun_distance.unwrap_or(base.sun_distance_au),
+            date: self.date.or(base.date.filter(|_| !moved)),
+            longitude_deg: self.longitude.or(base.longitude_deg),
             sun_disc: self.sun_disc.map_or(base.sun_disc, |switch| switch == Switch::On),
             month: self.month.unwrap_or(base.month),
             latitude_deg: self.latitude.unwrap_or(base.latitude_deg),
@@ -517,6 +600,7 @@ impl RenderArgs {
             table_error: self.table_error.unwrap_or(base.table_error),
             fineness: self.fineness.or(base.fineness.filter(|_| self.table_error.is_none())),
         };
+        let scene = scene.settled()?;
         scene.validate()?;
         Ok(scene)
     }

@@ -9,14 +9,17 @@ use crate::data::Data;
 use crate::sampling::POINTS;
 use crate::scene::SceneError;
 use crate::transport::Estimator;
+use crate::vectors::take_at_most;
 use std::time::Instant;
 use tables::views::Biome;
 
 pub(super) fn run(args: &BenchArgs) -> Result<Outcome, Failure> {
+    take_at_most(args.vectors.into());
     match args.what {
         BenchName::Anchors => anchors(args),
         BenchName::Solved => solved(args),
         BenchName::Polarised => polarised(args),
+        BenchName::Certificates => certificates(args),
     }
 }
 
@@ -80,6 +83,31 @@ fn print_polarised(sun: f64, wavelengths: &str, report: &bench::polarised::Repor
     println!(
         "                solved table off (rms, of I) by {off_i:.2} % in I, {off_qu:.2} % in Q and U; noise of the paths {noise_i:.2} and {noise_qu:.2} %"
     );
+}
+
+/// Elevations of the sun in degrees at which certificates are measured.
+const ELEVATIONS: [f64; 4] = [60.0, 10.0, -2.0, -5.0];
+
+fn certificates(args: &BenchArgs) -> Result<Outcome, Failure> {
+    let data = Data::load(&args.data).map_err(Failure::error)?;
+    println!(
+        "one thread, 8 wavelengths; costs of equal errors relative to I over those of certificates of radiance alone"
+    );
+    let pool = super::pool(Some(1))?;
+    for biome in biomes(args)? {
+        let measure = || bench::certificates::measure(&data, biome, &ELEVATIONS);
+        for report in pool.install(measure).map_err(Failure::error)? {
+            let ([scalar, polarised], [cost_i, cost_q, cost_u]) = (report.seconds.map(|s| 1e6 * s), report.cost());
+            let [radiance, i, q, u] = report.noise.map(|noise| 100.0 * noise.sqrt());
+            println!(
+                "{}: sun at {:>3} degrees  {polarised:4.0} us a fan for {scalar:4.0}  noise of one {i:.2} % of I, {q:.2} of Q, \
+                 {u:.2} of U for {radiance:.2} %  cost {cost_i:.2} for I, {cost_q:.2} for Q, {cost_u:.2} for U",
+                name(biome),
+                report.elevation_deg
+            );
+        }
+    }
+    Ok(Outcome::Done)
 }
 
 /// Zenith angles of the sun in degrees beside which solved tables are put.

@@ -14,6 +14,7 @@ mod plan;
 mod progress;
 mod radiance;
 mod render;
+mod scene;
 mod study;
 mod sweep;
 mod words;
@@ -31,6 +32,9 @@ enum Command {
     /// Say how a picture is made cheapest within an error, by stored measurements: method, wavelengths, what is left out and why that may be.
     /// Takes the flags of render
     Plan(Box<args::PlanArgs>),
+    /// Write, check and show scene files
+    #[command(subcommand)]
+    Scene(args::SceneCommand),
     /// Put runs with different seeds or shards together as one picture
     Merge(args::MergeArgs),
     /// Answer a file of reference cases: radiances with their standard errors
@@ -77,6 +81,7 @@ pub fn main() -> ExitCode {
     let outcome = match Command::parse() {
         Command::Render(args) => render::run(&args),
         Command::Plan(args) => plan::run(&args),
+        Command::Scene(command) => scene::run(&command),
         Command::Merge(args) => merge::run(&args),
         Command::Radiance(args) => radiance::run(&args),
         Command::Bench(args) => bench::run(&args),

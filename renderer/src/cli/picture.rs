@@ -6,11 +6,11 @@ use super::output::println;
 use super::progress::{amount, duration, percent, size};
 use crate::film::{DiscLayer, Estimate, Picture, exr, png, tone};
 use crate::render::left_out::{LeftOut, Off};
-use crate::render::{Achieved, Head, Part, Rendering, Shard, Sky, State, Summary, Verdict, receipt};
+use crate::render::{Achieved, Head, Part, Rendering, Residual, Shard, Sky, State, Summary, Verdict, receipt};
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
 use crate::transport::Method;
-use crate::transport::rungs::Rung;
+use crate::transport::rungs::{Rung, Stated};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -117,7 +117,7 @@ impl Product<'_> {
                 describe_left_out(&LeftOut::of(scene, sky), scene.error.filter(|_| !sky.is_solved()));
             }
             if let Some(verdict) = verdict {
-                describe_verdict(verdict, sky.sun_direction());
+                describe_verdict(verdict, sky.sun_direction(), scene.filter_deg.is_some());
             }
             if let Some(achieved) = achieved {
                 println!("achieved    {}", super::auto::words(achieved));
@@ -239,6 +239,14 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, 
         let rung = Rung::of(scene.method);
         println!("method      {}: {}", rung.name, rung.source);
         println!("            leaves out {}", rung.leaves_out);
+        match sky.stated() {
+            Some(Stated { further, points }) => println!(
+                "            light scattered or reflected again is about {} (rms over mean radiance); points on a line leave {}",
+                percent(further),
+                percent(points)
+            ),
+            None => println!("            states no error: its atmosphere is another"),
+        }
     }
     for part in parts {
         println!("            {part}");
@@ -282,25 +290,42 @@ fn describe_left_out(left_out: &Result<LeftOut, String>, asked: Option<f64>) {
     }
 }
 
-/// What a certificate found, with the sun in that direction.
-fn describe_verdict(verdict: &Verdict, sun: DVec3) {
-    let Verdict { asked, rms, most, mean, worst, worst_direction, size: (directions, fans) } = *verdict;
+/// What a certificate found, with the sun in that direction, of light that was `filtered` or not.
+fn describe_verdict(verdict: &Verdict, sun: DVec3, filtered: bool) {
+    let Verdict { asked, ref errors, size: (directions, fans) } = *verdict;
+    let Some(Residual { rms, most, mean, worst, worst_direction }) = errors.first().copied() else { return };
     let (high, away) = (worst_direction.z.asin().to_degrees(), worst_direction.angle_between(sun).to_degrees());
     let signed = |share: f64| format!("{}{}", if share < 0.0 { "-" } else { "+" }, percent(share.abs()));
-    let (beyond, asked) = (if verdict.holds() { "below" } else { "not shown to be below" }, percent(asked));
+    let stokes = errors.len() > 1;
+    let what = match (stokes, filtered) {
+        (true, _) => "I is ",
+        (false, true) => "behind the filter ",
+        (false, false) => "",
+    };
+    let beyond = match (stokes, verdict.holds()) {
+        (false, true) => "below",
+        (true, true) => "all three below",
+        (false, false) => "not shown to be below",
+        (true, false) => "not all three shown to be below",
+    };
+    let asked = percent(asked);
     println!(
-        "certified   off by {} (rms), at most {} with 95 % confidence: {beyond} the asked {asked}",
+        "certified   {what}off by {} (rms), at most {} with 95 % confidence: {beyond} the asked {asked}",
         percent(rms),
         percent(most)
     );
+    for (name, error) in ["Q", "U"].into_iter().zip(&errors[1..]) {
+        println!("            {name} is off by {} of I (rms), at most {}", percent(error.rms), percent(error.most));
+    }
+    let of = if stokes { " of I" } else { "" };
     println!(
-        "            mean {} +- {}; {directions} directions, {} fans of rays",
+        "            mean{of} {} +- {}; {directions} directions, {} fans of rays",
         signed(mean.0),
         percent(mean.1),
         amount(fans as f64)
     );
     println!(
-        "            worst direction, {high:.1} degrees high and {away:.1} from the sun: {} +- {}",
+        "            worst direction{of}, {high:.1} degrees high and {away:.1} from the sun: {} +- {}",
         signed(worst.0),
         percent(worst.1)
     );

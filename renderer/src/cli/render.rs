@@ -56,11 +56,6 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     if args.certify.is_some() && !sky.is_solved() {
         return Err(Failure::usage("--certify looks at solved tables: leave --method out"));
     }
-    if args.certify.is_some() && sky.is_polarised() {
-        return Err(Failure::usage(
-            "certificates are of radiance without polarisation: leave out --polarisation and --filter",
-        ));
-    }
     if let Some((x, y)) = args.pixel {
         return print_sample(&scene, &sky, (x, y), args.sample);
     }
@@ -209,20 +204,31 @@ fn replay_command(words: impl Iterator<Item = String>, (x, y): (u32, u32), sampl
     format!("{} --pixel {x},{y} --sample {sample}", words.join(" "))
 }
 
-/// A scene from JSON, or from the EXR file of a picture. Its own tables are found and, of a picture, must be what they
+/// A scene from TOML, JSON or XML of the thesis, or from the EXR file of a picture. Its own tables are found and, of a picture, must be what they
 /// were, unless `tables` come in their place.
-fn read_scene(path: &Path, tables: &[String]) -> Result<Scene, Failure> {
+pub(super) fn read_scene(path: &Path, tables: &[String]) -> Result<Scene, Failure> {
     let at = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let bytes = std::fs::read(path).map_err(|error| Failure::error(at(&format!("cannot be read: {error}"))))?;
     let attribute = |name: &str| exr::text_attribute(&bytes, name).map_err(|error| Failure::usage(at(&error)));
-    let (json, made_with) = if has_extension(path, "exr") {
+    let (text, made_with) = if has_extension(path, "exr") {
         let json = attribute(receipt::SCENE)?;
         let json = json.ok_or_else(|| Failure::usage(at(&"a picture that carries no scene")))?;
         (json, Some(attribute(receipt::TABLES)?.unwrap_or_default()))
     } else {
         (std::str::from_utf8(&bytes).map_err(|error| Failure::usage(at(&error)))?, None)
     };
-    let mut scene = Scene::from_json(json).map_err(|error| Failure::usage(at(&error)))?;
+    let read = if has_extension(path, "xml") {
+        let folder = path.parent().unwrap_or(Path::new("."));
+        Scene::from_mitsuba(text, folder).map(|imported| {
+            imported.notes.iter().for_each(|note| eprintln!("airlight: {}: {note}", path.display()));
+            imported.scene
+        })
+    } else if has_extension(path, "toml") {
+        Scene::from_toml(text)
+    } else {
+        Scene::from_json(text)
+    };
+    let mut scene = read.map_err(|error| Failure::usage(at(&error)))?;
     if tables.is_empty() {
         for table in &mut scene.tables {
             *table = super::picture::find_table(table, path, made_with)?;

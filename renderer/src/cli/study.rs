@@ -19,8 +19,10 @@ type MakeChart = fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError>;
 type Make = Box<dyn Fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Made, RenderError> + Sync>;
 
 pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
-    if args.quick && !matches!(args.what, StudyName::Ladder | StudyName::Plans | StudyName::HeldOut) {
-        return Err(Failure::usage("--quick belongs to ladder, plans and held-out: leave it out"));
+    let has_quick =
+        matches!(args.what, StudyName::Ladder | StudyName::Stability | StudyName::Plans | StudyName::HeldOut);
+    if args.quick && !has_quick {
+        return Err(Failure::usage("--quick belongs to ladder, stability, plans and held-out: leave it out"));
     }
     if args.resume && !matches!(args.what, StudyName::Plans | StudyName::HeldOut) {
         return Err(Failure::usage("--resume belongs to plans and held-out: leave it out"));
@@ -37,6 +39,7 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
     let make: Make = match args.what {
         StudyName::Columns => chart(study::columns::make),
         StudyName::SolvedSuns => chart(study::solved::suns),
+        StudyName::PolarisedSuns => chart(study::solved::polarised_suns),
         StudyName::SolvedGrids => chart(study::solved::grids),
         StudyName::NeutralPoints => chart(study::neutral_points::make),
         StudyName::Polarisation => Box::new(|data, progress| {
@@ -46,6 +49,10 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
         StudyName::Ladder => Box::new(move |data, progress| {
             let ladder = study::ladder::make(data, size, threads, progress)?;
             Ok(Made { bytes: ladder.csv().into_bytes(), rows: ladder.summary(), measured: None })
+        }),
+        StudyName::Stability => Box::new(move |data, progress| {
+            let maps = study::stability::make(data, size, progress)?;
+            Ok(Made { bytes: maps.csv().into_bytes(), rows: maps.summary(), measured: None })
         }),
         StudyName::Planner => Box::new(|_, _| {
             let (rows, chart) = judged().map_err(RenderError::Measured)?;

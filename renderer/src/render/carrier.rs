@@ -2,16 +2,17 @@
 
 use super::RenderError;
 use super::certify::{self, Certifies};
+use super::sky::Shows;
 use crate::atmosphere::{Air, Columns, Medium, Tolerance};
 use crate::data::Data;
 use crate::geometry::{Place, Shape};
-use crate::light::{SunDisc, solar_angular_radius};
+use crate::light::{SunDisc, solar_angular_radius_at};
 use crate::polarisation::{Frame, Stokes};
 use crate::sampling::Sampler;
 use crate::scene::{Scene, SceneError, SunShape};
 use crate::spectrum::{Packet, Wavelengths};
-use crate::transport::rungs::Cheap;
-use crate::transport::{self, Certificate, Estimator, Method, Panorama, Problem, SolveError, Tables};
+use crate::transport::rungs::{Cheap, Stated};
+use crate::transport::{self, Certificate, Estimator, Method, Panorama, Problem, SolveError, Solved, Tables};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::path::Path;
@@ -22,7 +23,16 @@ const SHARE: f64 = 0.1;
 const SHOWN: (f64, f64) = (2e-4, 2e-3);
 
 /// Error that a solved table may state at most.
-const MOST_ERROR: f64 = 0.1;
+pub(crate) const MOST_ERROR: f64 = 0.1;
+
+/// Directions of a picture.
+#[derive(Debug)]
+pub(super) struct Wanted {
+    /// Of many of its pixels, if it has many.
+    pub(super) shown: Vec<DVec3>,
+    /// Of some, evenly, in which its tables are judged.
+    pub(super) judged: Vec<DVec3>,
+}
 
 /// What a packet is made from.
 pub(super) struct Parts<'a> {
@@ -32,7 +42,7 @@ pub(super) struct Parts<'a> {
     pub(super) data: &'a Data,
     pub(super) place: Place,
     pub(super) sun_direction: DVec3,
-    pub(super) wanted: &'a [DVec3],
+    pub(super) wanted: &'a Wanted,
     pub(super) scene: &'a Scene,
     pub(super) kept: Option<&'a Path>,
 }
@@ -40,7 +50,6 @@ pub(super) struct Parts<'a> {
 impl Parts<'_> {
     pub(super) fn carry<const L: usize>(&self, packet: &Packet) -> Result<Box<dyn Carrier>, RenderError> {
         let nm: [f64; L] = self.wavelengths.lanes(packet);
-        let last = packet.range.end - 1;
         let (scene, polarised) = (self.scene, self.scene.is_polarised());
         let shape = if scene.flat { Shape::Flat } else { Shape::Sphere { radius_m: EARTH_RADIUS_M } };
         let medium = self.air.medium(&nm)?;
@@ -52,22 +61,28 @@ impl Parts<'_> {
             )
             .into());
         }
-        let albedo = std::array::from_fn(|lane| self.albedo[(packet.range.start + lane).min(last)]);
+        let albedo = std::array::from_fn(|lane| self.albedo[packet.index(lane)]);
         let sun = match scene.sun_shape {
-            SunShape::Disc => SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius())?,
-            SunShape::Even => SunDisc::darkened(self.sun_direction, solar_angular_radius(), vec![[1.0; L]]),
+            SunShape::Disc => {
+                SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius_at(scene.sun_distance_au))?
+            }
+            SunShape::Even => {
+                SunDisc::darkened(self.sun_direction, solar_angular_radius_at(scene.sun_distance_au), vec![[1.0; L]])
+            }
             SunShape::Point => SunDisc::beam(self.sun_direction),
         };
         let means = match (scene.method.estimator(), scene.method) {
             (Some(estimator), _) => Means::Estimated(estimator, Columns::new(&medium, shape, Tolerance::RENDER)),
             (None, Method::Solved) => {
-                let (view, sky) = ((self.place, self.sun_direction), (&medium, shape, albedo, polarised));
-                let tables = match scene.fineness {
-                    None => Tables::within(scene.table_error, view, sky, self.kept)?,
-                    Some(fineness) => Tables::alone(fineness, sky, self.kept)?,
+                let view = (self.place, self.sun_direction, self.wanted.judged.as_slice());
+                let sky = (&medium, shape, albedo, polarised);
+                let grids = match scene.fineness {
+                    None => Grids::Judged(Tables::within(scene.table_error, view, sky, self.kept)?),
+                    Some(fineness) => Grids::Alone(Solved::of(sky, &fineness.resolution(), self.kept)?),
                 };
-                let (error, seen) = seen(&tables, scene.table_error, (self.place, &sun), self.wanted)?;
-                Means::Solved { tables, asked: scene.table_error, error, seen }
+                let asked = scene.table_error;
+                let (error, seen) = seen(&grids, asked, (self.place, &sun), self.wanted)?;
+                Means::Solved { grids, asked, error, seen }
             }
             (None, method) => Means::Cheap(Cheap::new(method, &medium, shape, albedo, scene.steps)),
         };
@@ -76,22 +91,44 @@ impl Parts<'_> {
     }
 }
 
+/// Solved tables.
+#[derive(Debug)]
+enum Grids<const L: usize> {
+    /// With a coarser one that tells their error.
+    Judged(Tables<L>),
+    /// On a grid that was chosen, which states none.
+    Alone(Solved<L>),
+}
+
+impl<const L: usize> Grids<L> {
+    fn solved(&self) -> &Solved<L> {
+        match self {
+            Self::Judged(tables) => &tables.solved,
+            Self::Alone(solved) => solved,
+        }
+    }
+}
+
 /// The error that tables state for an observer and a sun, and what is seen with each of the suns that stand for the disc, as exactly as
 /// befits that error, or the `asked` one of tables that state none.
 fn seen<const L: usize>(
-    tables: &Tables<L>,
+    grids: &Grids<L>,
     asked: f64,
     (place, sun): (Place, &SunDisc<L>),
-    wanted: &[DVec3],
+    wanted: &Wanted,
 ) -> Result<(Option<f64>, Vec<Panorama<L>>), SolveError> {
-    let error = tables.error(place, sun.direction());
+    let error = match grids {
+        Grids::Judged(tables) => Some(tables.error(place, sun.direction(), &wanted.judged)),
+        Grids::Alone(_) => None,
+    };
     if let Some(error) = error.filter(|error| error.is_nan() || *error > MOST_ERROR) {
         return Err(SolveError::Inexact(error));
     }
     let (least, most) = SHOWN;
     let shown = (SHARE * error.unwrap_or(asked)).clamp(least, most);
-    let suns = tables.solved.suns(place, sun).into_iter();
-    Ok((error, suns.map(|sun| Panorama::new(&tables.solved, place, sun, shown, wanted)).collect()))
+    let solved = grids.solved();
+    let suns = solved.suns(place, sun).into_iter();
+    Ok((error, suns.map(|sun| Panorama::new(solved, place, sun, shown, &wanted.shown)).collect()))
 }
 
 /// A packet of wavelengths, whatever the number of its lanes; slices are as long as
@@ -111,12 +148,14 @@ pub(super) trait Carrier: Debug + Send + Sync {
     fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]);
     fn table_error(&self) -> Option<f64>;
     fn is_solved(&self) -> bool;
+    /// What a cheap method states of its own error.
+    fn stated(&self, from: Place) -> Option<Stated>;
     fn is_noiseless(&self) -> bool;
     fn bytes(&self) -> usize;
     /// Turns to another observer and sun.
-    fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError>;
-    /// A certificate of the solved table for its observer, of so many wavelengths; none of polarised light.
-    fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>>;
+    fn turn(&mut self, from: Place, sun: DVec3, wanted: &Wanted) -> Result<(), SolveError>;
+    /// A certificate of the solved table for its observer, of what is shown at so many wavelengths.
+    fn certificate(&self, from: Place, shows: Shows, count: usize) -> Option<Box<dyn Certifies + '_>>;
 }
 
 /// How radiance is found, with the tables for it.
@@ -126,7 +165,7 @@ enum Means<const L: usize> {
     /// With the error that was asked, the one stated for this observer and this sun, and what is seen with each of the suns that stand for
     /// the disc.
     Solved {
-        tables: Tables<L>,
+        grids: Grids<L>,
         asked: f64,
         error: Option<f64>,
         seen: Vec<Panorama<L>>,
@@ -172,10 +211,10 @@ impl<const L: usize> Carrier for Lanes<L> {
     fn radiance(&self, from: Place, direction: DVec3, sampler: &mut Sampler, factors: &mut [f64]) {
         let (estimator, columns) = match &self.means {
             Means::Estimated(estimator, columns) => (*estimator, columns),
-            Means::Solved { tables, seen, .. } => {
+            Means::Solved { grids, seen, .. } => {
                 factors.fill(0.0);
                 for sun in seen {
-                    let radiance = sun.radiance(&tables.solved, direction);
+                    let radiance = sun.radiance(grids.solved(), direction);
                     for (factor, radiance) in factors.iter_mut().zip(radiance) {
                         *factor += radiance / seen.len() as f64;
                     }
@@ -209,10 +248,10 @@ impl<const L: usize> Carrier for Lanes<L> {
             Means::Estimated(estimator, columns) => {
                 transport::stokes(*estimator, &self.problem(columns), from, direction, frame, sampler)
             }
-            Means::Solved { tables, seen, .. } => {
+            Means::Solved { grids, seen, .. } => {
                 let mut sum = [Stokes::default(); L];
                 for sun in seen {
-                    for (sum, one) in sum.iter_mut().zip(sun.stokes(&tables.solved, direction, frame)) {
+                    for (sum, one) in sum.iter_mut().zip(sun.stokes(grids.solved(), direction, frame)) {
                         *sum += one * (seen.len() as f64).recip();
                     }
                 }
@@ -237,6 +276,11 @@ impl<const L: usize> Carrier for Lanes<L> {
         matches!(self.means, Means::Solved { .. })
     }
 
+    fn stated(&self, from: Place) -> Option<Stated> {
+        let Means::Cheap(Some(cheap)) = &self.means else { return None };
+        cheap.stated(from, self.sun.direction())
+    }
+
     fn is_noiseless(&self) -> bool {
         !matches!(self.means, Means::Estimated(..))
     }
@@ -244,25 +288,23 @@ impl<const L: usize> Carrier for Lanes<L> {
     fn bytes(&self) -> usize {
         match &self.means {
             Means::Estimated(_, columns) => columns.bytes(),
-            Means::Solved { tables, .. } => tables.solved.bytes(),
+            Means::Solved { grids, .. } => grids.solved().bytes(),
             Means::Cheap(cheap) => cheap.as_ref().map_or(0, Cheap::bytes),
         }
     }
 
-    fn certificate(&self, from: Place, count: usize) -> Option<Box<dyn Certifies + '_>> {
-        let Means::Solved { tables: Tables { solved, .. }, .. } = &self.means else { return None };
-        if solved.is_polarised() {
-            return None;
-        }
+    fn certificate(&self, from: Place, shows: Shows, count: usize) -> Option<Box<dyn Certifies + '_>> {
+        let Means::Solved { grids, .. } = &self.means else { return None };
+        let solved = grids.solved();
         let columns = Columns::new(&self.medium, self.shape, Tolerance::RENDER);
         let certificate = Certificate::new(solved, columns, from, self.sun.direction());
-        Some(Box::new(certify::Packet { solved, certificate, count }))
+        Some(Box::new(certify::Packet { solved, certificate, shows, count }))
     }
 
-    fn turn(&mut self, from: Place, sun: DVec3, wanted: &[DVec3]) -> Result<(), SolveError> {
+    fn turn(&mut self, from: Place, sun: DVec3, wanted: &Wanted) -> Result<(), SolveError> {
         self.sun.turn(sun);
-        if let Means::Solved { tables, asked, error, seen: panoramas } = &mut self.means {
-            (*error, *panoramas) = seen(tables, *asked, (from, &self.sun), wanted)?;
+        if let Means::Solved { grids, asked, error, seen: panoramas } = &mut self.means {
+            (*error, *panoramas) = seen(grids, *asked, (from, &self.sun), wanted)?;
         }
         Ok(())
     }

@@ -1,11 +1,12 @@
 //! How far the solved tables of a picture are from the truth, found by certificates in some of its directions.
 
-use super::sky::Sky;
+use super::sky::{Shows, Sky};
 use crate::atmosphere::Columns;
 use crate::camera::Camera;
 use crate::geometry::Place;
+use crate::polarisation::{Frame, Stokes};
 use crate::scene::Scene;
-use crate::transport::{Certificate, Fan, Solved};
+use crate::transport::{Certificate, Certified, Fan, Solved};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::fmt::Debug;
@@ -23,39 +24,58 @@ const LOOKS: [u32; 6] = [4, 8, 16, 32, 64, 128];
 const ONE_LOOK: f64 = 1.645;
 const SIX_LOOKS: f64 = 2.394;
 
-/// What a certificate says about the tables of a picture; errors are relative to radiance.
+/// How far tables are off, relative to radiance: in that, or in another Stokes parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Verdict {
-    /// What was asked: whether the root mean square error is below it.
-    pub asked: f64,
-    /// Root mean square error over directions and wavelengths, without the certificate's own noise.
+pub struct Residual {
+    /// Root mean square over directions and wavelengths, without the certificate's own noise.
     pub rms: f64,
     /// What it is below with 95 % confidence.
     pub most: f64,
-    /// Mean error, and the standard error of that.
+    /// Mean, and the standard error of that.
     pub mean: (f64, f64),
     /// Mean over the wavelengths of the error in the direction in which it is largest, and its standard error.
     pub worst: (f64, f64),
     /// That direction.
     pub worst_direction: DVec3,
+}
+
+/// What a certificate says about the tables of a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// What was asked: whether every root mean square error is below it.
+    pub asked: f64,
+    /// Of radiance, which is what passes the filter if there is one; with Stokes parameters of I, Q and U, each relative to I.
+    pub errors: Vec<Residual>,
     /// Directions, and fans in all.
     pub size: (usize, u64),
 }
 
 impl Verdict {
-    /// Whether the error is below what was asked, with 95 % confidence.
+    /// Whether all errors are below what was asked, with 95 % confidence: if one is not, then its own bound says so, so that of several
+    /// no more is asked than of one.
     #[must_use]
     pub fn holds(&self) -> bool {
-        self.most <= self.asked
+        self.most() <= self.asked
+    }
+
+    /// What the largest error is below.
+    fn most(&self) -> f64 {
+        self.errors.iter().map(|error| error.most).fold(0.0, f64::max)
+    }
+
+    /// Whether an error is above what was asked, with the same confidence.
+    fn fails(&self) -> bool {
+        let least = |error: &Residual| 2.0 * error.rms.powi(2) - error.most.powi(2);
+        self.errors.iter().any(|error| least(error) > self.asked * self.asked)
     }
 }
 
-/// Certificates of a packet of wavelengths.
+/// Certificates of a packet of wavelengths: of radiance alone, or of I, Q and U, one row each.
 pub(super) trait Certifies: Debug + Sync {
     /// What the table says in a direction at each wavelength.
-    fn table(&self, direction: DVec3) -> Vec<f64>;
-    /// Mean and variance of radiance at each wavelength, by fans.
-    fn certified(&self, direction: DVec3, fans: u32, seed: u64, stream: u64) -> Vec<(f64, f64)>;
+    fn table(&self, direction: DVec3) -> Vec<Vec<f64>>;
+    /// Mean and variance at each wavelength, by fans.
+    fn certified(&self, direction: DVec3, fans: u32, seed: u64, stream: u64) -> Vec<Vec<(f64, f64)>>;
 }
 
 /// A certificate of one packet, of which the first `count` lanes count.
@@ -63,44 +83,83 @@ pub(super) trait Certifies: Debug + Sync {
 pub(super) struct Packet<'a, const L: usize> {
     pub(super) solved: &'a Solved<L>,
     pub(super) certificate: Certificate<'a, L>,
+    /// What is shown; other than radiance only of a table of polarised light.
+    pub(super) shows: Shows,
     pub(super) count: usize,
 }
 
+impl<const L: usize> Packet<'_, L> {
+    fn stokes<const N: usize>(
+        &self,
+        (direction, frame): (DVec3, Frame),
+        of: impl Fn(&Stokes) -> [f64; N],
+        fans: u32,
+        random: (u64, u64),
+    ) -> Vec<Certified<L>> {
+        self.certificate.stokes((direction, frame), of, (Fan::USUAL, fans), random).map_or(Vec::new(), Vec::from)
+    }
+}
+
+fn parameters(seen: &Stokes) -> [f64; 3] {
+    [seen.i, seen.q, seen.u]
+}
+
+/// What a filter lets pass: its axis is at an angle of the frame of pictures.
+fn passed(angle: f64) -> impl Fn(&Stokes) -> [f64; 1] {
+    move |seen| [seen.mirrored().through(angle)]
+}
+
 impl<const L: usize> Certifies for Packet<'_, L> {
-    fn table(&self, direction: DVec3) -> Vec<f64> {
+    fn table(&self, direction: DVec3) -> Vec<Vec<f64>> {
         let (from, sun) = self.certificate.observer();
-        self.solved.radiance(from, direction, sun, false)[..self.count].to_vec()
+        let seen = || self.solved.stokes(from, direction, Frame::level(from.up, direction), sun, false);
+        let row = |of: &dyn Fn(&Stokes) -> f64| seen()[..self.count].iter().map(of).collect();
+        match self.shows {
+            Shows::Radiance => vec![self.solved.radiance(from, direction, sun, false)[..self.count].to_vec()],
+            Shows::Stokes => (0..3).map(|k| row(&|seen| parameters(seen)[k])).collect(),
+            Shows::Filtered(angle) => vec![row(&|seen| passed(angle)(seen)[0])],
+        }
     }
 
-    fn certified(&self, direction: DVec3, fans: u32, seed: u64, stream: u64) -> Vec<(f64, f64)> {
-        let found = self.certificate.radiance(direction, Fan::USUAL, fans, seed, stream);
-        (0..self.count).map(|j| (found.mean[j], found.variance[j])).collect()
+    fn certified(&self, direction: DVec3, fans: u32, seed: u64, stream: u64) -> Vec<Vec<(f64, f64)>> {
+        let look = (direction, Frame::level(self.certificate.observer().0.up, direction));
+        let found = match self.shows {
+            Shows::Radiance => vec![self.certificate.radiance(direction, Fan::USUAL, fans, seed, stream)],
+            Shows::Stokes => self.stokes(look, parameters, fans, (seed, stream)),
+            Shows::Filtered(angle) => self.stokes(look, passed(angle), fans, (seed, stream)),
+        };
+        found.iter().map(|found| (0..self.count).map(|j| (found.mean[j], found.variance[j])).collect()).collect()
     }
 }
 
 /// A direction with what is known of it.
 struct Looked {
     direction: DVec3,
-    table: Vec<f64>,
+    /// Of radiance, or of I, Q and U, at each wavelength.
+    table: Vec<Vec<f64>>,
     /// Sums over rounds of means and of their variances.
-    sums: Vec<(f64, f64)>,
+    sums: Vec<Vec<(f64, f64)>>,
 }
 
-/// Directions of a picture, spread evenly over its pixels (R_2 of Roberts 2018), that see light.
-fn directions(camera: &Camera, (width, height): (u32, u32), packets: &[Box<dyn Certifies + '_>]) -> Vec<Looked> {
+/// Directions of a picture, spread evenly over its pixels (R_2 of Roberts 2018).
+pub(super) fn spread(camera: &Camera, (width, height): (u32, u32)) -> impl Iterator<Item = DVec3> {
     const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3];
     // Of the whole sphere a small part may be seen.
     const TRIES: u32 = 20_000;
-    let places = (0..TRIES).filter_map(|i| {
+    (0..TRIES).filter_map(move |i| {
         let [x, y] = STEPS.map(|step| (0.5 + step * f64::from(i + 1)).fract());
         let pixel = |share: f64, size: u32| (share * f64::from(size)).floor() + 0.5;
         camera.direction(pixel(x, width), pixel(y, height))
-    });
-    places.filter_map(|direction| look(direction, packets)).take(DIRECTIONS).collect()
+    })
+}
+
+/// Directions of a picture that see light.
+fn directions(camera: &Camera, size: (u32, u32), packets: &[Box<dyn Certifies + '_>]) -> Vec<Looked> {
+    spread(camera, size).filter_map(|direction| look(direction, packets)).take(DIRECTIONS).collect()
 }
 
 /// Looks at 128 directions of a picture of solved tables until it is clear, with 95 % confidence, whether their root mean square error
-/// is below `asked`, or each has had 1024 fans, or `stop` is set. The sun is the middle of its disc. `None` if the picture
+/// is below `asked`, that of each Stokes parameter if the picture has them, or each has had 1024 fans, or `stop` is set. The sun is the middle of its disc. `None` if the picture
 /// has no solved tables or sees no light.
 #[must_use]
 pub fn certify(
@@ -122,10 +181,10 @@ pub fn certify(
             round += 1;
         }
         let judged = judge(&all, round, asked, SIX_LOOKS);
+        observe(judged.most());
+        let clear = judged.holds() || judged.fails();
         verdict = Some(judged);
-        observe(judged.most);
-        let (square, margin) = (judged.rms.powi(2), judged.most.powi(2) - judged.rms.powi(2));
-        if judged.holds() || square - margin > asked * asked || round < rounds {
+        if clear || round < rounds {
             break;
         }
     }
@@ -136,12 +195,22 @@ pub fn certify(
 fn go_round(all: &mut [Looked], packets: &[Box<dyn Certifies + '_>], seed: u64, round: u32) {
     all.par_iter_mut().enumerate().for_each(|(i, looked)| {
         let stream = (i as u64) << 32 | u64::from(round);
-        let found = packets.iter().flat_map(|packet| packet.certified(looked.direction, FANS, seed, stream));
-        for (sum, one) in looked.sums.iter_mut().zip(found.collect::<Vec<_>>()) {
+        let found = joined(packets.iter().map(|packet| packet.certified(looked.direction, FANS, seed, stream)));
+        for (sum, one) in looked.sums.iter_mut().flatten().zip(found.into_iter().flatten()) {
             sum.0 += one.0;
             sum.1 += one.1;
         }
     });
+}
+
+/// The rows of all packets, each longer by those of the next.
+fn joined<T>(packets: impl Iterator<Item = Vec<Vec<T>>>) -> Vec<Vec<T>> {
+    let mut all: Vec<Vec<T>> = Vec::new();
+    for rows in packets {
+        all.resize_with(rows.len(), Vec::new);
+        all.iter_mut().zip(rows).for_each(|(all, row)| all.extend(row));
+    }
+    all
 }
 
 /// The verdict of so many rounds on a table for an observer and a sun, in directions that see light; `None` if none does. The
@@ -155,7 +224,8 @@ pub fn certify_table<const L: usize>(
     rounds: u32,
 ) -> Option<Verdict> {
     let certificate = Certificate::new(solved, columns, from, sun);
-    let packets: [Box<dyn Certifies + '_>; 1] = [Box::new(Packet { solved, certificate, count: L })];
+    let shows = if solved.is_polarised() { Shows::Stokes } else { Shows::Radiance };
+    let packets: [Box<dyn Certifies + '_>; 1] = [Box::new(Packet { solved, certificate, shows, count: L })];
     let mut all: Vec<Looked> = directions.iter().filter_map(|&direction| look(direction, &packets)).collect();
     for round in 0..rounds {
         go_round(&mut all, &packets, 0, round);
@@ -165,13 +235,23 @@ pub fn certify_table<const L: usize>(
 
 /// A direction and what the tables say of it; `None` in the dark.
 fn look(direction: DVec3, packets: &[Box<dyn Certifies + '_>]) -> Option<Looked> {
-    let table: Vec<f64> = packets.iter().flat_map(|packet| packet.table(direction)).collect();
-    let sums = vec![(0.0, 0.0); table.len()];
-    table.iter().all(|&light| light > 0.0).then_some(Looked { direction, table, sums })
+    let table = joined(packets.iter().map(|packet| packet.table(direction)));
+    let sums = table.iter().map(|row| vec![(0.0, 0.0); row.len()]).collect();
+    table[0].iter().all(|&light| light > 0.0).then_some(Looked { direction, table, sums })
 }
 
-/// The verdict after some rounds, the bound so many standard errors above.
+/// The verdict after some rounds, the bounds so many standard errors above.
 fn judge(all: &[Looked], rounds: u32, asked: f64, confident: f64) -> Verdict {
+    let rows = all.first().map_or(0, |looked| looked.table.len());
+    Verdict {
+        asked,
+        errors: (0..rows).map(|row| residual(all, row, rounds, confident)).collect(),
+        size: (all.len(), all.len() as u64 * u64::from(rounds * FANS)),
+    }
+}
+
+/// The error of one row of what is shown, relative to the first.
+fn residual(all: &[Looked], row: usize, rounds: u32, confident: f64) -> Residual {
     let n = f64::from(rounds);
     let first = all.first().map_or(DVec3::Z, |looked| looked.direction);
     let (mut worst, mut worst_direction) = ((0.0_f64, 0.0_f64), first);
@@ -179,11 +259,12 @@ fn judge(all: &[Looked], rounds: u32, asked: f64, confident: f64) -> Verdict {
     let rows: Vec<(f64, f64)> = all
         .iter()
         .map(|looked| {
-            let count = looked.table.len() as f64;
+            let count = looked.table[row].len() as f64;
             let (mut off, mut square, mut deviation) = (0.0, 0.0, 0.0);
-            for (table, (mean, variance)) in looked.table.iter().zip(&looked.sums) {
+            let values = looked.table[row].iter().zip(&looked.sums[row]).zip(&looked.table[0]);
+            for ((table, (mean, variance)), radiance) in values {
                 let truth = mean / n;
-                let (relative, noise) = ((table - truth) / table, variance / (n * n) / (table * table));
+                let (relative, noise) = ((table - truth) / radiance, variance / (n * n) / (radiance * radiance));
                 off += relative / count;
                 square += (relative * relative - noise) / count;
                 // Wavelengths share their paths: errors add up.
@@ -203,14 +284,12 @@ fn judge(all: &[Looked], rounds: u32, asked: f64, confident: f64) -> Verdict {
     };
     let (square, error) = mean_of(&|row| row.1);
     let square = square.max(0.0);
-    Verdict {
-        asked,
+    Residual {
         rms: square.sqrt(),
         most: (square + confident * error).sqrt(),
         mean: mean_of(&|row| row.0),
         worst,
         worst_direction,
-        size: (rows.len(), rows.len() as u64 * u64::from(rounds * FANS)),
     }
 }
 
@@ -224,11 +303,19 @@ mod tests {
         let looked = |i: usize| {
             let noise = 0.03 * if i.is_multiple_of(2) { 1.0 } else { -1.0 };
             let truth = 1.0 - 0.01 + noise;
-            Looked { direction: DVec3::Z, table: vec![1.0], sums: vec![(4.0 * truth, 16.0 * 0.03 * 0.03)] }
+            Looked {
+                direction: DVec3::Z,
+                table: vec![vec![1.0], vec![0.5]],
+                sums: vec![vec![(4.0 * truth, 16.0 * 0.03 * 0.03)], vec![(4.0 * 0.48, 0.0)]],
+            }
         };
         let all: Vec<_> = (0..100).map(looked).collect();
         let verdict = judge(&all, 4, 0.1, ONE_LOOK);
-        assert!((verdict.rms - 0.01).abs() < 1e-9 && (verdict.mean.0 - 0.01).abs() < 1e-12, "{verdict:?}");
-        assert!(verdict.holds() && verdict.most > 0.012, "{verdict:?}");
+        let [i, q] = [verdict.errors[0], verdict.errors[1]];
+        assert!((i.rms - 0.01).abs() < 1e-9 && (i.mean.0 - 0.01).abs() < 1e-12, "{verdict:?}");
+        assert!(verdict.holds() && i.most > 0.012, "{verdict:?}");
+        // The second row is off by 0.02, of the first's 1, without noise.
+        assert!((q.rms - 0.02).abs() < 1e-12 && (q.most - q.rms).abs() < 1e-12, "{verdict:?}");
+        assert!(!judge(&all, 4, 0.019, ONE_LOOK).holds() && judge(&all, 4, 0.019, ONE_LOOK).fails());
     }
 }

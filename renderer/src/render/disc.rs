@@ -2,7 +2,7 @@
 
 use super::Sky;
 use crate::film::DiscLayer;
-use crate::light::solar_angular_radius;
+use crate::light::solar_angular_radius_at;
 use crate::scene::Scene;
 use rayon::prelude::*;
 
@@ -26,7 +26,7 @@ pub fn disc_layer(scene: &Scene, sky: &Sky) -> DiscLayer {
     }
     let camera = scene.camera();
     let (width, height) = scene.size();
-    let radius = solar_angular_radius();
+    let radius = solar_angular_radius_at(scene.sun_distance_au);
     let pixel = |x: u32, y: u32| -> Option<Vec<f64>> {
         let middle = camera.direction(f64::from(x) + 0.5, f64::from(y) + 0.5)?;
         let reach = camera.pixel_radius(x, y)?;

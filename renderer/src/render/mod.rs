@@ -24,7 +24,8 @@ mod tests;
 
 pub(crate) use achieved::PACKETS;
 pub use achieved::{Achieved, achieved};
-pub use certify::{Verdict, certify, certify_table};
+pub(crate) use carrier::MOST_ERROR as MOST_TABLE_ERROR;
+pub use certify::{Residual, Verdict, certify, certify_table};
 pub use disc::disc_layer;
 pub use merge::{MergeError, Merged};
 pub use sample::replay;

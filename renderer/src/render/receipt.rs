@@ -34,8 +34,9 @@ pub fn tables(sky: &Sky) -> String {
 
 /// The attributes of a picture's EXR file, names beginning with `airlight.`: program and version, the scene as JSON
 /// (`airlight render` reads it), the seeds and shards whose samples it has, one a line, samples, errors, ozone, illuminances, exposure of the PNG, and
-/// each table with its checksum; with a certificate, the rms error of solved tables and what it is below with 95 % confidence; of a planned picture what was asked
-/// of which metric, the rms error in random pixels, and what it is above and below, each with 95 % confidence; without
+/// each table with its checksum; with a certificate, the rms error of solved tables and what it is below with 95 % confidence, of Q and U too if the
+/// picture has them; of a planned picture what was asked of which metric, the rms error in random pixels, and what it is above and below, each with
+/// 95 % confidence; without
 /// polarisation, how far that puts luminance and radiance off ([`LeftOut`]), or why it is not known. No clock, machine or folder.
 #[must_use]
 pub fn receipt(
@@ -74,8 +75,15 @@ pub fn receipt(
         (TABLES, text(tables(sky))),
     ];
     if let Some(verdict) = verdict {
-        attributes.push(("airlight.certified_rms", Attribute::Number(verdict.rms)));
-        attributes.push(("airlight.certified_rms_most", Attribute::Number(verdict.most)));
+        let names = [
+            ["airlight.certified_rms", "airlight.certified_rms_most"],
+            ["airlight.certified_rms_q", "airlight.certified_rms_q_most"],
+            ["airlight.certified_rms_u", "airlight.certified_rms_u_most"],
+        ];
+        for ([rms, most], error) in names.into_iter().zip(&verdict.errors) {
+            attributes.push((rms, Attribute::Number(error.rms)));
+            attributes.push((most, Attribute::Number(error.most)));
+        }
     }
     if let Some(Achieved { metric, asked, found, between: [least, most], .. }) = achieved {
         attributes.push(("airlight.achieved_metric", text(metric.name().into())));

@@ -1,22 +1,23 @@
 //! A scene turned into something that answers: what arrives from a direction?
 
 use super::RenderError;
-use super::carrier::{Carrier, Parts};
-use super::certify::Certifies;
+use super::carrier::{Carrier, Parts, Wanted};
+use super::certify::{Certifies, spread};
 use super::domes;
 use crate::atmosphere::{Air, AirSettings, Haze, OzoneSource};
 use crate::data::{Data, Identity};
-use crate::geometry::Place;
+use crate::geometry::{Place, Shape};
 use crate::polarisation::{Frame, Stokes};
 use crate::sampling::Sampler;
 use crate::scene::{Scene, SceneError};
 use crate::spectrum::Colour;
-use crate::transport::rungs::{Conditions, Dome, Rung};
+use crate::transport::highest;
+use crate::transport::rungs::{Conditions, Dome, Rung, Stated};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::ops::Range;
 use std::path::Path;
-use tables::units::KM;
+use tables::units::{EARTH_RADIUS_M, KM};
 use tables::{Curve, Kind, TableError};
 
 /// Everything that is computed once for a picture. All spectra are per unit of the
@@ -48,7 +49,7 @@ struct Fitted {
 
 /// What a picture shows of the light.
 #[derive(Debug, Clone, Copy)]
-enum Shows {
+pub(super) enum Shows {
     /// Radiance.
     Radiance,
     /// Stokes parameters.
@@ -77,6 +78,13 @@ impl Sky {
         } else {
             with_own = data.with_tables(&scene.tables)?;
             &with_own
+        };
+        let elsewhere;
+        let data = if scene.sun_distance_au == 1.0 {
+            data
+        } else {
+            elsewhere = data.with_sun_at(scene.sun_distance_au);
+            &elsewhere
         };
         check_own(scene, data)?;
         check_wavelengths(scene, data)?;
@@ -114,7 +122,6 @@ impl Sky {
         let carriers = wavelengths.packets().into_iter().map(|packet| {
             let carrier = match packet.lanes {
                 1 => parts.carry::<1>(&packet),
-                4 => parts.carry::<4>(&packet),
                 8 => parts.carry::<8>(&packet),
                 _ => parts.carry::<16>(&packet),
             };
@@ -261,9 +268,16 @@ impl Sky {
         errors.reduce(|a, b| Some(a?.max(b?))).flatten()
     }
 
-    /// Certificates of the solved tables, packet by packet; `None` if there are none, or of polarised light.
+    /// What single scattering and its closure state of their own errors, the largest of the packets of wavelengths; `None` of other methods.
+    #[must_use]
+    pub fn stated(&self) -> Option<Stated> {
+        let all = self.carriers.iter().filter_map(|(_, carrier)| carrier.stated(self.place));
+        all.reduce(|a, b| Stated { further: a.further.max(b.further), points: a.points.max(b.points) })
+    }
+
+    /// Certificates of the solved tables, packet by packet; `None` if there are none.
     pub(super) fn certificates(&self) -> Option<Vec<Box<dyn Certifies + '_>>> {
-        self.carriers.iter().map(|(range, carrier)| carrier.certificate(self.place, range.len())).collect()
+        self.carriers.iter().map(|(range, carrier)| carrier.certificate(self.place, self.shows, range.len())).collect()
     }
 
     /// Adds the solar disc seen in `direction` through the air, in sr^-1, times `weight`.
@@ -422,14 +436,21 @@ fn check_wavelengths(scene: &Scene, data: &Data) -> Result<(), TableError> {
 /// Pictures of fewer pixels than this are looked at direction by direction, and of larger ones about so many are asked where they look.
 const PANORAMIC: usize = 4096;
 
-/// Directions all over a picture; none of a small one.
-fn looked_at(scene: &Scene) -> Vec<DVec3> {
+/// Directions of a picture in which its tables are judged.
+const JUDGED: usize = 64;
+
+/// Directions all over a picture.
+fn looked_at(scene: &Scene) -> Wanted {
     let (camera, (width, height)) = (scene.camera(), scene.size());
+    let shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
+    let highest = highest(Place::above(scene.altitude_km * KM), shape, scene.top_km * KM);
+    let judged = spread(&camera, (width, height)).filter(|direction| direction.z <= highest).take(JUDGED).collect();
     let pixels = width as usize * height as usize;
     if pixels < PANORAMIC {
-        return Vec::new();
+        return Wanted { shown: Vec::new(), judged };
     }
     let step = ((pixels / PANORAMIC) as f64).sqrt().max(1.0) as usize;
     let rows = (0..height).step_by(step).flat_map(|y| (0..width).step_by(step).map(move |x| (x, y)));
-    rows.filter_map(|(x, y)| camera.direction(f64::from(x) + 0.5, f64::from(y) + 0.5)).collect()
+    let shown = rows.filter_map(|(x, y)| camera.direction(f64::from(x) + 0.5, f64::from(y) + 0.5)).collect();
+    Wanted { shown, judged }
 }

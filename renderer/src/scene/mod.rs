@@ -3,11 +3,18 @@
 //! A scene can be written as JSON and is carried by the pictures made from it. Keys are
 //! the names of the fields; a key that is left out has its default, an unknown key is an error.
 
+mod file;
+mod mitsuba;
+mod moment;
 mod names;
+mod schema;
 mod validate;
 
+pub use mitsuba::Imported;
+pub use moment::{Moment, SunPlace};
 pub(crate) use names::word;
 pub use names::{CameraKind, SunShape};
+pub use schema::schema;
 pub use validate::SceneError;
 
 use crate::atmosphere::{Amount, Depolarisation, HazePhase, HazeSettings, OzoneSource};
@@ -38,7 +45,7 @@ const BLOCKS: u32 = 16;
 const LARGE_BLOCK: u32 = 64;
 
 /// One picture.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Scene {
     /// Altitude of the observer above the ground in km, 0 to 1e6.
@@ -49,6 +56,17 @@ pub struct Scene {
     pub sun_elevation_deg: f64,
     /// Azimuth of the sun in degrees clockwise from north, -360 to 360.
     pub sun_azimuth_deg: f64,
+    /// Distance of the sun in astronomical units, 0.9 to 1.1: light goes with its square, the disc's width with it.
+    #[serde(skip_serializing_if = "is_one")]
+    pub sun_distance_au: f64,
+    /// An instant that says where the sun stands at the place of latitude and longitude, how far it is, and the month:
+    /// 2026-06-21T18:30:00+02:00.
+    #[schemars(schema_with = "schema::date")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub date: Option<Moment>,
+    /// Longitude in degrees, east positive, -180 to 180: with the date.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub longitude_deg: Option<f64>,
     /// Whether the disc itself is drawn. The light is that of the disc either way.
     pub sun_disc: bool,
     /// Month, 1 to 12: which ozone.
@@ -61,9 +79,11 @@ pub struct Scene {
     pub ozone_du: Option<f64>,
     /// Kind of aerosol, or none.
     #[serde(with = "names::word::biome_or_none")]
+    #[schemars(schema_with = "schema::biome")]
     pub biome: Option<Biome>,
     /// Whose optics the aerosol has.
     #[serde(with = "names::word::aerosol_source")]
+    #[schemars(schema_with = "schema::aerosol_source")]
     pub aerosol_source: AerosolSource,
     /// Relative humidity in percent of the aerosol that takes up water, 0 to 99; its own if not given.
     pub humidity_percent: Option<f64>,
@@ -80,8 +100,10 @@ pub struct Scene {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tables: Vec<String>,
     /// Reflectance of the ground.
+    #[schemars(schema_with = "schema::albedo")]
     pub albedo: Albedo,
     /// Wavelengths in nm. Default: 16 from 380 to 780 nm.
+    #[schemars(schema_with = "schema::wavelengths")]
     pub wavelengths_nm: Wavelengths,
     /// How wavelengths become colour; any but `spectral` brings its own wavelengths.
     #[serde(skip_serializing_if = "is_default")]
@@ -115,6 +137,7 @@ pub struct Scene {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filter_deg: Option<f64>,
     /// How radiance is found.
+    #[schemars(schema_with = "schema::method")]
     pub method: Method,
     /// Points on each line of sight of the methods `single`, `isotropic` and `oneil`, 2 to 4096; the method's own number if not
     /// given.
@@ -168,6 +191,9 @@ impl Default for Scene {
             top_km: 120.0,
             sun_elevation_deg: 30.0,
             sun_azimuth_deg: 180.0,
+            sun_distance_au: 1.0,
+            date: None,
+            longitude_deg: None,
             sun_disc: true,
             month: 6,
             latitude_deg: 45.0,
@@ -402,6 +428,11 @@ impl Scene {
 /// Whether a choice is the default one, which files leave out.
 fn is_default<T: Copy + PartialEq + Default>(choice: &T) -> bool {
     *choice == T::default()
+}
+
+/// Whether a distance is the usual one, which files leave out.
+fn is_one(distance: &f64) -> bool {
+    *distance == 1.0
 }
 
 /// A relative path that stays below its folder, with forward slashes; of any other the name of the file.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Which projection a picture has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum CameraKind {
     /// Equidistant fisheye
@@ -15,7 +15,7 @@ pub enum CameraKind {
 }
 
 /// Form of the sun as a light.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SunShape {
     /// A disc that is darker towards its limb, as measured

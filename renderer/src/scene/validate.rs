@@ -53,6 +53,14 @@ pub enum SceneError {
         /// What the table says.
         source: TableError,
     },
+    /// A line of a scene file that says nothing of a scene.
+    #[error("line {line}: {what}")]
+    File {
+        /// Its number, from 1.
+        line: usize,
+        /// What is wrong, and what would be right.
+        what: String,
+    },
     /// Text that is no scene.
     #[error("not a scene: {}", excerpt(&.0.to_string()))]
     Malformed(#[from] serde_json::Error),
@@ -88,6 +96,8 @@ impl Scene {
         range("top", self.top_km, 1.0, 120.0, " km")?;
         range("sun-elevation", self.sun_elevation_deg, -90.0, 90.0, " degrees")?;
         range("sun-azimuth", self.sun_azimuth_deg, -360.0, 360.0, " degrees")?;
+        range("sun-distance", self.sun_distance_au, 0.9, 1.1, " au")?;
+        optional("longitude", self.longitude_deg, -180.0, 180.0, " degrees")?;
         range("month", f64::from(self.month), 1.0, 12.0, "")?;
         range("latitude", self.latitude_deg, -90.0, 90.0, " degrees")?;
         optional("ozone", self.ozone_du, 0.0, 1000.0, " DU")?;

@@ -7,7 +7,7 @@ use tables::units::LUMINOUS_EFFICACY_LM_W;
 use tables::views::{Observer, Sun};
 
 /// How radiance at a few wavelengths becomes colour, with any transport method.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scheme {
     #[default]

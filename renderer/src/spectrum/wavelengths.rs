@@ -46,8 +46,16 @@ pub enum SpectrumError {
 pub struct Packet {
     /// Indices into the list.
     pub range: Range<usize>,
-    /// Lanes of the packet, 1, 4, 8 or 16; those beyond the range repeat its last wavelength.
+    /// Lanes of the packet, 1, 8 or 16; those beyond the range repeat it.
     pub lanes: usize,
+}
+
+impl Packet {
+    /// Index into the list of a lane's wavelength.
+    #[must_use]
+    pub fn index(&self, lane: usize) -> usize {
+        self.range.start + lane % self.range.len()
+    }
 }
 
 impl Wavelengths {
@@ -88,19 +96,20 @@ impl Wavelengths {
     }
 
     /// Shares the list out to as few packets of at most 16 as possible, as even as
-    /// possible, with the least lanes of 1, 4, 8, 16 that hold the largest of them.
+    /// possible, with the least lanes of 1, 8, 16 that hold the largest of them.
     #[must_use]
     pub fn packets(&self) -> Vec<Packet> {
         let n = self.0.len();
         let size = n.div_ceil(n.div_ceil(16));
-        let lanes = [1, 4, 8, 16].into_iter().find(|&l| l >= size).unwrap_or(16);
+        let lanes = [1, 8, 16].into_iter().find(|&l| l >= size).unwrap_or(16);
         (0..n).step_by(size).map(|start| Packet { range: start..(start + size).min(n), lanes }).collect()
     }
 
-    /// The wavelengths in nm of a packet, the lanes beyond its range filled with its last.
+    /// The wavelengths in nm of a packet, those of its range again and again: paths choose a lane to fly by, and none is to be chosen much more
+    /// often than another.
     #[must_use]
     pub fn lanes<const L: usize>(&self, packet: &Packet) -> [f64; L] {
-        std::array::from_fn(|lane| self.0[(packet.range.start + lane).min(packet.range.end - 1)])
+        std::array::from_fn(|lane| self.0[packet.index(lane)])
     }
 }
 
@@ -198,7 +207,7 @@ mod tests {
     #[test]
     fn packets_cover_the_list_once_with_the_fewest_lanes() {
         for (count, packets, lanes) in
-            [(1, 1, 1), (2, 1, 4), (5, 1, 8), (9, 1, 16), (16, 1, 16), (17, 2, 16), (40, 3, 16), (401, 26, 16)]
+            [(1, 1, 1), (2, 1, 8), (5, 1, 8), (9, 1, 16), (16, 1, 16), (17, 2, 16), (40, 3, 16), (401, 26, 16)]
         {
             let wavelengths = Wavelengths::visible(count).expect("valid");
             let got = wavelengths.packets();
@@ -208,6 +217,6 @@ mod tests {
         }
         let five = Wavelengths::visible(5).expect("valid");
         let lanes: [f64; 8] = five.lanes(&five.packets()[0]);
-        assert_eq!(lanes, [380.0, 480.0, 580.0, 680.0, 780.0, 780.0, 780.0, 780.0]);
+        assert_eq!(lanes, [380.0, 480.0, 580.0, 680.0, 780.0, 380.0, 480.0, 580.0]);
     }
 }

@@ -36,7 +36,7 @@ const SUNS: [f64; 4] = [30.0, 80.0, 90.0, 95.0];
 
 /// Where others put the nodes of a texture of transmittances to space, by radius r and cosine mu of the zenith angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Map {
+pub(super) enum Map {
     /// Even in altitude and in mu from -0.2 to 1.
     Even,
     /// Even in the root of altitude and in atan((mu + 0.15) / 1.15 tan 1.5) / 1.5 (Bruneton & Neyret 2008, their program).
@@ -45,13 +45,14 @@ enum Map {
     Bruneton2017,
 }
 
-impl Map {
-    const ALL: [(Self, &'static str); 3] = [
-        (Self::Even, "texture, even in altitude and cosine"),
-        (Self::Bruneton2008, "texture, map of Bruneton & Neyret 2008"),
-        (Self::Bruneton2017, "texture, map of Bruneton 2017"),
-    ];
+/// All of them, with their names.
+pub(super) const MAPS: [(Map, &str); 3] = [
+    (Map::Even, "texture, even in altitude and cosine"),
+    (Map::Bruneton2008, "texture, map of Bruneton & Neyret 2008"),
+    (Map::Bruneton2017, "texture, map of Bruneton 2017"),
+];
 
+impl Map {
     /// Altitude in m and cosine at coordinates from 0 to 1, below a top in m.
     fn at(self, [u, v]: [f64; 2], top: f64) -> (f64, f64) {
         let radius = EARTH_RADIUS_M;
@@ -89,7 +90,7 @@ impl Map {
 }
 
 /// A texture of transmittances to space in single precision, bilinear between its nodes.
-struct Texture {
+pub(super) struct Texture {
     map: Map,
     size: [usize; 2],
     top: f64,
@@ -97,7 +98,7 @@ struct Texture {
 }
 
 impl Texture {
-    fn new(map: Map, size: [usize; 2], medium: &Medium<1>) -> Self {
+    pub(super) fn new(map: Map, size: [usize; 2], medium: &Medium<1>) -> Self {
         let top = medium.top_m();
         let texels = (0..size[0] * size[1])
             .into_par_iter()
@@ -113,7 +114,7 @@ impl Texture {
         Self { map, size, top, texels }
     }
 
-    fn to_space(&self, h: f64, mu: f64) -> f64 {
+    pub(super) fn to_space(&self, h: f64, mu: f64) -> f64 {
         let coordinates = self.map.coordinates(h, mu, self.top);
         let [(i, s), (j, t)] = std::array::from_fn(|axis| {
             let at = coordinates[axis].clamp(0.0, 1.0) * (self.size[axis] - 1) as f64;
@@ -127,7 +128,7 @@ impl Texture {
 }
 
 /// What gives transmittances.
-enum Lookup<'a> {
+pub(super) enum Lookup<'a> {
     Columns(Box<Columns<1>>),
     Texture(Texture),
     /// Quadrature, and no table.
@@ -144,7 +145,7 @@ impl Lookup<'_> {
     }
 
     /// From a place to space.
-    fn to_space(&self, place: Place, direction: DVec3) -> f64 {
+    pub(super) fn to_space(&self, place: Place, direction: DVec3) -> f64 {
         match self {
             Self::Columns(columns) => columns.transmittance(place, direction).map_or(0.0, |through| through[0]),
             Self::Texture(texture) => texture.to_space(place.altitude_m, place.up.dot(direction)),
@@ -319,7 +320,7 @@ fn skies(data: &Data) -> Result<[Medium<1>; 3], RenderError> {
 }
 
 /// Molecules of scale height 8 km and optical depth 0.2, and a haze of optical depth 1 up to 2 km.
-fn haze() -> Result<Medium<1>, MediumError> {
+pub(super) fn haze() -> Result<Medium<1>, MediumError> {
     const TOP_M: f64 = 1e5;
     let component = |density, scattering| Component {
         density,
@@ -347,7 +348,7 @@ pub fn make(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
     let skies = skies(data)?;
     let right: Vec<Right<'_>> = skies.iter().map(Right::new).collect();
     let mut points = Vec::new();
-    let steps = TOLERANCES.len() + Map::ALL.len() * SIZES.len();
+    let steps = TOLERANCES.len() + MAPS.len() * SIZES.len();
     let mut done = 0;
     let mut add = |curve: &str, table: &dyn Fn(&Medium<1>) -> Lookup<'static>| {
         let (mut bytes, mut errors) = (0, Errors::default());
@@ -371,7 +372,7 @@ pub fn make(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
             Lookup::Columns(Box::new(Columns::new(medium, SHAPE, Tolerance { depth })))
         });
     }
-    for (map, name) in Map::ALL {
+    for (map, name) in MAPS {
         for size in SIZES {
             add(name, &|medium| Lookup::Texture(Texture::new(map, size, medium)));
         }
@@ -390,7 +391,7 @@ mod tests {
 
     #[test]
     fn maps_and_their_inverses_agree() {
-        for (map, name) in Map::ALL {
+        for (map, name) in MAPS {
             for at in [[0.1, 0.2], [0.5, 0.9], [0.93, 0.4], [0.02, 0.6]] {
                 let (h, mu) = map.at(at, 1e5);
                 let back = map.coordinates(h, mu, 1e5);

@@ -7,6 +7,7 @@ pub mod neutral_points;
 pub mod plans;
 pub mod polarisation;
 pub mod solved;
+pub mod stability;
 pub mod strip;
 
 use std::fmt::Write;

@@ -35,9 +35,29 @@ const USUAL: [&str; 2] =
 const FINEST: [&str; 2] =
     ["finest tables: below, with 95 % confidence (certificates)", "finest tables: stated (from coarser ones)"];
 
+/// Of polarised light: elevations of the sun in degrees, rounds of fans in clear air and with aerosol, and panels: what certificates find
+/// that the errors of I, Q and U are below, and what they find.
+const POLARISED_SUNS: [f64; 4] = [60.0, 10.0, 2.0, 0.0];
+const POLARISED_ROUNDS: [u32; 2] = [48, 6];
+const BELOW: [&str; 3] = [
+    "I: below, with 95 % confidence",
+    "Q: below, with 95 % confidence, relative to I",
+    "U: below, with 95 % confidence, relative to I",
+];
+const RMS: [&str; 3] = ["I: found (rms)", "Q: found (rms), relative to I", "U: found (rms), relative to I"];
+
 /// Directions above the horizon, even in solid angle.
 fn dome() -> Vec<DVec3> {
     (0..DIRECTIONS).map(|i| spiral(i, DIRECTIONS, [0.0, 1.0])).collect()
+}
+
+/// Clear air and the nine biomes.
+fn airs() -> Vec<Option<Biome>> {
+    std::iter::once(None).chain(Biome::ALL.into_iter().map(Some)).collect()
+}
+
+fn curve(biome: Option<Biome>) -> String {
+    biome.map_or("clear", Biome::name).to_owned()
 }
 
 /// Error of tables as the renderer takes them over the sun's elevation, for clear air and the nine biomes: what certificates find it is
@@ -46,7 +66,7 @@ fn dome() -> Vec<DVec3> {
 /// # Errors
 /// [`RenderError`] if the data do not have what it takes.
 pub fn suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError> {
-    let all: Vec<Option<Biome>> = std::iter::once(None).chain(Biome::ALL.into_iter().map(Some)).collect();
+    let all = airs();
     let mut points = Vec::new();
     for (i, &biome) in all.iter().enumerate() {
         let medium = medium::<WAVELENGTHS>(data, biome, &visible())?;
@@ -54,18 +74,17 @@ pub fn suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
         let from = Place::above(EYE_M);
         // Any error is small enough for the usual tables, none for the finest.
         for (k, (error, [below, stated])) in [(f64::INFINITY, USUAL), (0.0, FINEST)].into_iter().enumerate() {
-            let high = (from, towards(90.0 - SUNS[0], 0.0));
+            let high = (from, towards(90.0 - SUNS[0], 0.0), &[] as &[_]);
             let tables = Tables::within(error, high, (&medium, SHAPE, ALBEDO, false), None)?;
             for (n, &elevation) in SUNS.iter().enumerate() {
                 let sun = towards(90.0 - elevation, 0.0);
                 let mut add = |panel, value| {
-                    let curve = biome.map_or("clear", Biome::name).to_owned();
-                    points.push(Point { panel, curve, at: [elevation, 100.0 * value] });
+                    points.push(Point { panel, curve: curve(biome), at: [elevation, 100.0 * value] });
                 };
                 if let Some(verdict) = certify_table(&tables.solved, columns.clone(), (from, sun), &dome(), ROUNDS) {
-                    add(below, verdict.most);
+                    verdict.errors.iter().for_each(|error| add(below, error.most));
                 }
-                add(stated, tables.error(from, sun).unwrap_or_default());
+                add(stated, tables.error(from, sun, &[]));
                 let done = k as f64 + (n + 1) as f64 / SUNS.len() as f64;
                 progress((i as f64 + 0.5 * done) / all.len() as f64);
             }
@@ -75,6 +94,39 @@ pub fn suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
     Ok(Chart {
         title: "Solved tables over the sun's elevation: error of radiance, 64 directions, 8 wavelengths".to_owned(),
         axes: ["sun elevation / degrees", "relative error / %"],
+        points,
+    })
+}
+
+/// Errors of the usual tables of polarised light by day, clear air and the nine biomes: what certificates find, of I, Q and U, relative to I.
+///
+/// # Errors
+/// [`RenderError`] if the data do not have what it takes.
+pub fn polarised_suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError> {
+    let all = airs();
+    let mut points = Vec::new();
+    for (i, &biome) in all.iter().enumerate() {
+        let medium = medium::<WAVELENGTHS>(data, biome, &visible())?;
+        let columns = Columns::new(&medium, SHAPE, Tolerance::RENDER);
+        let solved = Solved::polarised(&medium, SHAPE, ALBEDO, &Resolution::RENDER)?;
+        let rounds = POLARISED_ROUNDS[usize::from(biome.is_some())];
+        for (n, &elevation) in POLARISED_SUNS.iter().enumerate() {
+            let at = (Place::above(EYE_M), towards(90.0 - elevation, 0.0));
+            if let Some(verdict) = certify_table(&solved, columns.clone(), at, &dome(), rounds) {
+                for (error, (below, rms)) in verdict.errors.iter().zip(BELOW.into_iter().zip(RMS)) {
+                    for (panel, value) in [(below, error.most), (rms, error.rms)] {
+                        points.push(Point { panel, curve: curve(biome), at: [elevation, 100.0 * value] });
+                    }
+                }
+            }
+            progress((i as f64 + (n + 1) as f64 / POLARISED_SUNS.len() as f64) / all.len() as f64);
+        }
+    }
+    points.sort_by_key(|point| point.panel);
+    Ok(Chart {
+        title: "Solved tables of polarised light over the sun's elevation: errors relative to I, 64 directions, 8 wavelengths"
+            .to_owned(),
+        axes: ["sun elevation / degrees", "error relative to I / %"],
         points,
     })
 }

@@ -24,11 +24,13 @@ use crate::atmosphere::{Columns, Medium};
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::polarisation::{Frame, Stokes};
-use crate::sampling::Sampler;
+use crate::sampling::{Sampler, spiral};
 use glam::DVec3;
 pub use radiation::Pair;
 use radiation::{Both, Polarised, Radiation, Scalar};
-pub use solved::{Certificate, Certified, FINER, Fan, Fineness, Panorama, Resolution, SolveError, Solved, Tables};
+pub use solved::{
+    Certificate, Certified, FINER, Fan, Fineness, Panorama, Resolution, SolveError, Solved, Tables, covers_planet,
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +61,20 @@ pub enum Method {
 }
 
 impl Method {
+    /// All of them, from exact to rough.
+    pub const ALL: [Self; 10] = [
+        Self::Judge,
+        Self::Paths,
+        Self::Solved,
+        Self::Isotropic,
+        Self::Single,
+        Self::Oneil,
+        Self::HosekWilkie,
+        Self::Preetham,
+        Self::Perez,
+        Self::Cie,
+    ];
+
     /// Its estimator; none for methods without noise.
     #[must_use]
     pub fn estimator(self) -> Option<Estimator> {
@@ -148,6 +164,25 @@ pub fn both<const L: usize>(
     sampler: &mut Sampler,
 ) -> [Pair; L] {
     trace::<Both, L>(estimator, problem, from, (direction, frame), sampler)
+}
+
+/// How many directions are looked in to tell how far a method is off.
+const DIRECTIONS: u32 = 64;
+
+/// Directions about an observer, even in solid angle: all around, or from above the air those in which it lies.
+fn directions(from: Place, shape: Shape, top_m: f64) -> impl Iterator<Item = DVec3> {
+    (0..DIRECTIONS).map(move |i| spiral(i, DIRECTIONS, [-1.0, highest(from, shape, top_m)]))
+}
+
+/// Cosine of the least zenith angle at which an observer sees air that ends at `top_m`.
+pub(crate) fn highest(from: Place, shape: Shape, top_m: f64) -> f64 {
+    match shape {
+        Shape::Sphere { radius_m } if from.altitude_m > top_m => {
+            let sine = (radius_m + top_m) / (radius_m + from.altitude_m);
+            -((1.0 - sine) * (1.0 + sine)).sqrt()
+        }
+        _ => 1.0,
+    }
 }
 
 fn trace<R: Radiation, const L: usize>(

@@ -77,6 +77,7 @@ pub(super) trait Radiation {
 }
 
 /// Radiance alone: phase functions for matrices of scattering.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Scalar;
 
 impl Radiation for Scalar {
@@ -131,6 +132,7 @@ impl Radiation for Scalar {
 }
 
 /// Stokes parameters.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Polarised;
 
 impl Radiation for Polarised {

@@ -393,4 +393,4 @@ fn an_empty_ray_gives_no_light() {
     }
 }
 
-mod polarised;
+pub(super) mod polarised;

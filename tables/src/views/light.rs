@@ -14,6 +14,12 @@ pub struct Sun {
 }
 
 impl Sun {
+    /// The sun at another distance than 1 au: irradiance goes with 1/d^2.
+    #[must_use]
+    pub fn at_distance(&self, distance_au: f64) -> Self {
+        Self { irradiance_w_m2_nm: self.irradiance_w_m2_nm.times(distance_au.powi(-2)), ..self.clone() }
+    }
+
     /// Fields `irradiance` (W m^-2 nm^-1) over `wavelength` (nm), and `limb_darkening` (1)
     /// over `limb_wavelength` (nm) and `power` (1): the a_i of I(mu)/I(1) = sum_i a_i mu^i.
     ///

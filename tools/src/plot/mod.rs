@@ -19,6 +19,7 @@ pub mod model;
 mod ozone;
 mod picture;
 mod settings;
+pub mod stability;
 mod text;
 
 #[cfg(feature = "study")]

@@ -252,7 +252,7 @@ impl<const L: usize> Exact<'_, L> {
 
     /// The row of the line with perigee `p`: from the perigee, or from the ground if that is below it.
     fn row(&self, p: f64, nodes: &[f64]) -> Row<L> {
-        vectorised(OneRow { exact: self, p, nodes })
+        vectorised::<L, _>(OneRow { exact: self, p, nodes })
     }
 
     #[inline(always)]
@@ -384,7 +384,7 @@ impl<const L: usize> Exact<'_, L> {
     /// Whether the row in the middle of two is their mean, as seen from the start of the line and from the top; `from` is
     /// the first node that counts.
     fn mean_holds(&self, rows: [&Row<L>; 3], bases: &[usize], from: usize) -> bool {
-        vectorised(MeanHolds { exact: self, rows, bases, from })
+        vectorised::<L, _>(MeanHolds { exact: self, rows, bases, from })
     }
 
     #[inline(always)]

@@ -69,6 +69,12 @@ impl<const L: usize> Columns<L> {
             + 8 * L * (self.limb.starts.len() + self.ground.starts.len() + 2 * self.extinction.len())
     }
 
+    /// Form of the planet.
+    #[must_use]
+    pub fn shape(&self) -> Shape {
+        self.shape
+    }
+
     /// Altitude of the top in m.
     #[must_use]
     pub fn top_m(&self) -> f64 {

@@ -6,7 +6,7 @@ use crate::camera::direction_at;
 use crate::phase::Phase;
 use crate::polarisation::{Scattering, Stokes};
 use crate::sampling::Sampler;
-use crate::scene::Albedo;
+use crate::scene::{Albedo, SunShape};
 use glam::DVec3;
 use tables::views::Biome;
 
@@ -156,4 +156,30 @@ fn a_phase_function_without_a_matrix_is_refused() {
     let error = Sky::new(&dust(HazePhase::HenyeyGreenstein), &data).expect_err("no matrix").to_string();
     assert!(error.contains("--phase mie"), "{error}");
     assert!(Sky::new(&dust(HazePhase::Mie), &data).is_ok());
+}
+
+#[test]
+fn certificates_look_at_what_pictures_show() {
+    // Single values of a point sun; the picture's come from polynomials in the direction, which are right to 2e-4 of I.
+    let solved = Scene { method: Method::Solved, spp: None, sun_shape: SunShape::Point, ..polarised() };
+    for scene in [solved.clone(), Scene { polarisation: false, filter_deg: Some(35.0), ..solved }] {
+        let sky = sky(&scene);
+        let packets = sky.certificates().expect("solved");
+        let direction = DVec3::new(0.5, -0.3, 0.4).normalize();
+        // Clockwise as seen from above: azimuth of pictures.
+        let level = direction.cross(DVec3::Z).normalize();
+        let mut shown = vec![0.0; sky.values()];
+        sky.look(direction, level, &Sampler::new(0, 0, 0), &mut shown);
+        let [packet] = packets.as_slice() else { panic!("one packet of three wavelengths") };
+        let rows = packet.table(direction);
+        assert_eq!(rows.len() * 3, shown.len());
+        for (k, j) in (0..rows.len()).flat_map(|k| (0..3).map(move |j| (k, j))) {
+            // U has the other sign in the picture's frame, which makes no difference to how far off it is.
+            let sign = if k == 2 { -1.0 } else { 1.0 };
+            let off = rows[k][j] - sign * shown[3 * k + j];
+            assert!(off.abs() < 1e-3 * rows[0][j], "{k}, {j}: {:e}, {:e}", rows[k][j], shown[3 * k + j]);
+        }
+        let verdict = certify(&scene, &sky, 0.01, &NEVER, &|_| {}).expect("solved");
+        assert!(verdict.holds() && verdict.errors.len() == rows.len(), "{verdict:?}");
+    }
 }

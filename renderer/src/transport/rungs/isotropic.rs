@@ -31,37 +31,49 @@ const POINTS: u32 = 20;
 /// An atmosphere and its field Psi.
 #[derive(Debug)]
 pub struct Isotropic<const L: usize> {
-    air: Air<L>,
-    /// Psi per unit solar irradiance in sr^-1 [altitude][cosine].
-    field: Vec<[f64; L]>,
+    pub(super) air: Air<L>,
+    pub(super) further: Further<L>,
 }
 
 impl<const L: usize> Isotropic<L> {
     pub(super) fn new(air: Air<L>) -> Self {
-        let top = air.medium().top_m();
-        let rows = (0..SIZE).into_par_iter().map(|i| row(&air, top * i as f64 / (SIZE - 1) as f64));
-        let field = rows.collect::<Vec<_>>().concat();
-        Self { air, field }
+        Self { further: Further::new(&air), air }
     }
 
     pub(super) fn radiance(&self, from: Place, direction: DVec3, sun: DVec3) -> [f64; L] {
-        self.air.radiance((from, direction), sun, Some(|altitude, cosine| self.field(altitude, cosine)))
+        self.air.radiance((from, direction), sun, self.air.steps(), Some(&self.further))
     }
 
     /// Bytes of the tables.
     pub(super) fn bytes(&self) -> usize {
-        8 * L * self.field.len() + self.air.columns().bytes()
+        8 * L * self.further.field.len() + self.air.columns().bytes()
+    }
+}
+
+/// The field Psi of an atmosphere.
+#[derive(Debug)]
+pub(super) struct Further<const L: usize> {
+    top_m: f64,
+    /// Psi per unit solar irradiance in sr^-1 [altitude][cosine].
+    field: Vec<[f64; L]>,
+}
+
+impl<const L: usize> Further<L> {
+    pub(super) fn new(air: &Air<L>) -> Self {
+        let top_m = air.medium().top_m();
+        let rows = (0..SIZE).into_par_iter().map(|i| row(air, top_m * i as f64 / (SIZE - 1) as f64));
+        Self { top_m, field: rows.collect::<Vec<_>>().concat() }
     }
 
     /// Psi at an altitude in m, where the sun has that cosine of zenith angle.
-    fn field(&self, altitude_m: f64, cosine: f64) -> [f64; L] {
+    pub(super) fn at(&self, altitude_m: f64, cosine: f64) -> [f64; L] {
         let last = (SIZE - 1) as f64;
         let place = |x: f64| {
             let at = x.clamp(0.0, 1.0) * last;
             let node = (at as usize).min(SIZE - 2);
             (node, at - node as f64)
         };
-        let ((h, a), (c, b)) = (place(altitude_m / self.air.medium().top_m()), place(0.5 * (cosine + 1.0)));
+        let ((h, a), (c, b)) = (place(altitude_m / self.top_m), place(0.5 * (cosine + 1.0)));
         let node = |i: usize, k: usize| &self.field[i * SIZE + k];
         let corners = [node(h, c), node(h, c + 1), node(h + 1, c), node(h + 1, c + 1)];
         let shares = [(1.0 - a) * (1.0 - b), (1.0 - a) * b, a * (1.0 - b), a * b];
@@ -75,7 +87,7 @@ impl<const L: usize> Isotropic<L> {
     }
 }
 
-/// Psi at an altitude for all suns.
+/// Psi at an altitude in m for all suns.
 fn row<const L: usize>(air: &Air<L>, altitude_m: f64) -> Vec<[f64; L]> {
     let suns: Vec<DVec3> = (0..SIZE)
         .map(|k| {

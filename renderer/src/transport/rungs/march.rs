@@ -1,5 +1,6 @@
 //! A sum along the line of sight, for methods on Airlight's own atmosphere.
 
+use super::isotropic::Further;
 use crate::atmosphere::{Chord, Columns, Local, MAX_COMPONENTS, Medium, Tolerance};
 use crate::geometry::{Place, Shape};
 use crate::vectors::exp_minus;
@@ -29,6 +30,11 @@ pub(super) struct At<const L: usize> {
 impl<const L: usize> Air<L> {
     pub(super) fn new(medium: &Medium<L>, shape: Shape, albedo: [f64; L], steps: u32) -> Self {
         Self { medium: medium.clone(), columns: Columns::new(medium, shape, Tolerance::RENDER), albedo, steps }
+    }
+
+    /// Points on a line of sight.
+    pub(super) fn steps(&self) -> u32 {
+        self.steps
     }
 
     pub(super) fn columns(&self) -> &Columns<L> {
@@ -74,17 +80,18 @@ impl<const L: usize> Air<L> {
         Some(chord)
     }
 
-    /// Radiance per unit solar irradiance: at each point sunlight scattered once, and what `more` of the local sun's cosine and the
-    /// altitude gives, scattered evenly (sr^-1); at the end sunlight that the ground reflects.
+    /// Radiance per unit solar irradiance, with that many points on the line: at each sunlight scattered once, and `more` light scattered
+    /// evenly (sr^-1); at the end sunlight that the ground reflects.
     pub(super) fn radiance(
         &self,
         (from, direction): (Place, DVec3),
         sun: DVec3,
-        more: Option<impl Fn(f64, f64) -> [f64; L]>,
+        steps: u32,
+        more: Option<&Further<L>>,
     ) -> [f64; L] {
         let towards = Towards::new(&self.medium, direction.dot(sun));
         let mut sum = [0.0; L];
-        let chord = self.march(from, direction, self.steps, |At { place, local, weight }| {
+        let chord = self.march(from, direction, steps, |At { place, local, weight }| {
             if let Some(sunlight) = self.sunlight(place, sun) {
                 let scattered = towards.at(&local);
                 for j in 0..L {
@@ -92,7 +99,7 @@ impl<const L: usize> Air<L> {
                 }
             }
             if let Some(more) = &more {
-                let field = more(place.altitude_m, place.up.dot(sun));
+                let field = more.at(place.altitude_m, place.up.dot(sun));
                 for j in 0..L {
                     sum[j] += weight[j] * local.scattering[j] * field[j];
                 }

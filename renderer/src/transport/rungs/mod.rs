@@ -16,17 +16,19 @@ pub mod oneil;
 pub mod perez;
 pub mod preetham;
 pub mod single;
+mod stated;
 #[cfg(test)]
 mod tests;
 
 pub use ladder::{Conditions, LADDER, Refusal, Rung};
 pub use march::STEPS;
+pub use stated::Stated;
 
 use crate::atmosphere::Medium;
 use crate::geometry::{Place, Shape};
 use crate::transport::Method;
 use glam::DVec3;
-use isotropic::Isotropic;
+use isotropic::{Further, Isotropic};
 use march::Air;
 use oneil::Oneil;
 use std::fmt::Debug;
@@ -64,6 +66,17 @@ impl<const L: usize> Cheap<L> {
             Kind::Single(air) => single::radiance(air, from, direction, sun),
             Kind::Isotropic(isotropic) => isotropic.radiance(from, direction, sun),
             Kind::Oneil(oneil) => oneil.radiance(from, direction, sun),
+        }
+    }
+
+    /// What the method states of its own error at an observer with the sun in that unit direction; none of O'Neil's planet, which is another
+    /// atmosphere. See [`Stated`].
+    #[must_use]
+    pub fn stated(&self, from: Place, sun: DVec3) -> Option<Stated> {
+        match &self.0 {
+            Kind::Single(air) => Some(Stated::of(air, &Further::new(air), from, sun)),
+            Kind::Isotropic(isotropic) => Some(Stated::of(&isotropic.air, &isotropic.further, from, sun)),
+            Kind::Oneil(_) => None,
         }
     }
 

@@ -13,5 +13,5 @@ use glam::DVec3;
 
 /// Radiance per unit solar irradiance in sr^-1.
 pub(super) fn radiance<const L: usize>(air: &Air<L>, from: Place, direction: DVec3, sun: DVec3) -> [f64; L] {
-    air.radiance((from, direction), sun, None::<fn(f64, f64) -> [f64; L]>)
+    air.radiance((from, direction), sun, air.steps(), None)
 }

@@ -152,7 +152,7 @@ impl<const L: usize> Peak<L> {
                     })
                 })
                 .collect();
-        let folds = vectorised(Convolutions { peak: &peak, straight });
+        let folds = vectorised::<L, _>(Convolutions { peak: &peak, straight });
         Ok(Self { columns, shares, folds })
     }
 }

@@ -6,7 +6,7 @@ use super::harmonics::legendre;
 use super::line::{Rule, Take, crossings, quadrature};
 use super::linear::Linear;
 use super::onward::Dipoles;
-use super::orders::{Gathered, LANES, Turns};
+use super::orders::{Gathered, LANES, Turns, azimuth_cosines};
 use super::rays::Line;
 use crate::geometry::Place;
 use crate::vectors::{add_product, add_scaled};
@@ -218,9 +218,16 @@ impl<const L: usize> Take<L> for Hats<'_, L> {
     }
 }
 
-/// Moments at a level (of a sun, of each (l, m)) of the first order, and, of use at the ground, the irradiance from above.
+/// Azimuths on half a circle at which it is found out how much sunlight is scattered into a line.
+const AZIMUTHS: usize = 8;
+
+/// Moments at a level (of a sun, of each (l, m)) of the first order, and, of use at the ground, the irradiance from above; with the phase
+/// functions at so many azimuths, a multiple of [`AZIMUTHS`].
+///
+/// What air scatters into a line changes slowly with its azimuth, only the phase functions do not: it is taken from the few azimuths by the
+/// polynomial in the cosine through them, which are Chebyshev's nodes.
 #[inline(always)]
-pub(super) fn scatter<const L: usize, const AZIMUTHS: usize>(
+pub(super) fn scatter<const L: usize, const DIRECTIONS: usize>(
     setup: &Setup<'_, L>,
     level: usize,
     lines: &[Line<L>],
@@ -230,6 +237,7 @@ pub(super) fn scatter<const L: usize, const AZIMUTHS: usize>(
     let suns = &setup.grid.suns;
     let mut sum = Gathered::new(setup.optics.moments.count(), suns.count());
     let mut light = Light::new(suns.batches::<AZIMUTHS>(), rows(setup));
+    let mut radiance = vec![[0.0; L]; suns.count() * DIRECTIONS];
     for line in lines {
         let steps = steps(setup, level, line.zenith, sunlight);
         let turns = Turns::new::<AZIMUTHS>(line.zenith, suns);
@@ -237,8 +245,9 @@ pub(super) fn scatter<const L: usize, const AZIMUTHS: usize>(
         for (i, step) in steps.iter().enumerate() {
             light.pass(&turns, sunlight, (i > 0).then(|| &steps[i - 1]), step);
         }
-        light.arrive(setup, line, &turns, sunlight, scattering);
-        sum.add::<AZIMUTHS>(line, &setup.optics.moments, &light.radiance);
+        light.reflect(setup, line, &turns, sunlight);
+        light.arrive::<DIRECTIONS>(setup, line, scattering, &mut radiance);
+        sum.add::<DIRECTIONS>(line, &setup.optics.moments, &radiance);
         if setup.optics.moments.polarised() {
             light.polarise(setup, line, &turns);
             sum.add_linear::<AZIMUTHS>(line, &light.linear);
@@ -310,7 +319,8 @@ struct Light<const L: usize> {
     sums: Vec<[[f32; L]; LANES]>,
     /// How far above the horizon the suns of each batch were at the crossing before.
     above: Vec<[f32; LANES]>,
-    radiance: Vec<[f32; L]>,
+    /// By the ground.
+    reflected: Vec<[[f32; L]; LANES]>,
     /// Q and U, of polarised light.
     linear: Vec<Linear<L>>,
 }
@@ -320,7 +330,7 @@ impl<const L: usize> Light<L> {
         Self {
             sums: vec![[[0.0; L]; LANES]; batches * rows],
             above: vec![[0.0; LANES]; batches],
-            radiance: vec![[0.0; L]; batches * LANES],
+            reflected: vec![[[0.0; L]; LANES]; batches],
             linear: vec![[[0.0; L]; 2]; batches * LANES],
         }
     }
@@ -410,39 +420,76 @@ impl<const L: usize> Light<L> {
         }
     }
 
-    /// Makes radiance of it, with the sunlight that the ground reflects.
+    /// The sunlight that the ground reflects into the line.
     #[inline(always)]
-    fn arrive(
-        &mut self,
-        setup: &Setup<'_, L>,
-        line: &Line<L>,
-        turns: &Turns,
-        sunlight: &Sunlight<L>,
-        scattering: &Scattering<L>,
-    ) {
-        let (species, rows) = (setup.optics.species.len(), rows(setup));
-        let batches = turns.batches.iter().zip(self.radiance.as_chunks_mut::<LANES>().0);
-        for (b, (batch, radiance)) in batches.enumerate() {
-            *radiance = [[0.0; L]; LANES];
-            for (index, sums) in self.sums[b * rows..b * rows + species].iter().enumerate() {
-                for i in 0..LANES {
-                    let phase = scattering.at(index, batch.towards[i]);
-                    add_product(&mut radiance[i], &phase, &sums[i]);
-                }
-            }
-            if let Some(foot) = &line.foot {
-                let there = batch.there(foot.frame);
-                let (nodes, fractions) = sunlight.locate(0, &there);
-                for i in 0..LANES {
-                    if there[i] > 0.0 {
-                        let through = sunlight.at(0, nodes[i], fractions[i]);
-                        let factor = there[i] * FRAC_1_PI as f32;
-                        for j in 0..L {
-                            radiance[i][j] += factor * setup.optics.albedo[j] as f32 * foot.through[j] * through[j];
-                        }
+    fn reflect(&mut self, setup: &Setup<'_, L>, line: &Line<L>, turns: &Turns, sunlight: &Sunlight<L>) {
+        self.reflected.fill([[0.0; L]; LANES]);
+        let Some(foot) = &line.foot else { return };
+        for (batch, reflected) in turns.batches.iter().zip(&mut self.reflected) {
+            let there = batch.there(foot.frame);
+            let (nodes, fractions) = sunlight.locate(0, &there);
+            for i in 0..LANES {
+                if there[i] > 0.0 {
+                    let through = sunlight.at(0, nodes[i], fractions[i]);
+                    let factor = there[i] * FRAC_1_PI as f32;
+                    for j in 0..L {
+                        reflected[i][j] += factor * setup.optics.albedo[j] as f32 * foot.through[j] * through[j];
                     }
                 }
             }
         }
     }
+
+    /// Makes radiance of it, of each sun and so many azimuths.
+    #[inline(always)]
+    fn arrive<const DIRECTIONS: usize>(
+        &self,
+        setup: &Setup<'_, L>,
+        line: &Line<L>,
+        scattering: &Scattering<L>,
+        radiance: &mut [[f32; L]],
+    ) {
+        let (species, rows) = (setup.optics.species.len(), rows(setup));
+        let shares = shares::<DIRECTIONS>();
+        let turned = azimuth_cosines::<DIRECTIONS>();
+        let sine = ((1.0 - line.zenith) * (1.0 + line.zenith)).max(0.0).sqrt() as f32;
+        let suns = setup.grid.suns.sines_cosines.iter().zip(radiance.as_chunks_mut::<DIRECTIONS>().0);
+        for (sun, ((sin, cos), radiance)) in suns.enumerate() {
+            // Where this sun's azimuths are among the lanes of its batch.
+            let (batch, lane) = (sun * AZIMUTHS / LANES, sun * AZIMUTHS % LANES);
+            let reflected = &self.reflected[batch][lane..lane + AZIMUTHS];
+            let sums = &self.sums[batch * rows..batch * rows + species];
+            for (i, radiance) in radiance.iter_mut().enumerate() {
+                let towards = cos * line.zenith as f32 + sin * sine * turned[i];
+                *radiance = at(&shares[i], reflected);
+                for (index, sums) in sums.iter().enumerate() {
+                    let phase = scattering.at(index, towards);
+                    add_product(radiance, &phase, &at(&shares[i], &sums[lane..lane + AZIMUTHS]));
+                }
+            }
+        }
+    }
+}
+
+/// Sum of the values at all azimuths, each with its share.
+#[inline(always)]
+fn at<const L: usize>(shares: &[f32; AZIMUTHS], values: &[[f32; L]]) -> [f32; L] {
+    let mut sum = [0.0; L];
+    for (share, value) in shares.iter().zip(values) {
+        add_scaled(&mut sum, *share, value);
+    }
+    sum
+}
+
+/// For each of so many azimuths what it has of the values at the few: of the polynomial in the cosine through
+/// n of Chebyshev's nodes, (1 + 2 sum_(0 < m < n) cos(m phi) cos(m phi_a)) / n; one of them itself where the two are the same.
+fn shares<const DIRECTIONS: usize>() -> [[f32; AZIMUTHS]; DIRECTIONS] {
+    let azimuth = |i: usize, count: usize| (i as f64 + 0.5) / count as f64 * std::f64::consts::PI;
+    std::array::from_fn(|i| {
+        std::array::from_fn(|a| {
+            let (here, node) = (azimuth(i, DIRECTIONS), azimuth(a, AZIMUTHS));
+            let waves: f64 = (1..AZIMUTHS).map(|m| (m as f64 * here).cos() * (m as f64 * node).cos()).sum();
+            ((1.0 + 2.0 * waves) / AZIMUTHS as f64) as f32
+        })
+    })
 }

@@ -22,7 +22,7 @@ pub struct Resolution {
 }
 
 /// A resolution by name: each takes two to three times as long as the one before.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fineness {
     /// What tells how exact the usual grid is

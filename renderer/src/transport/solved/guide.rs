@@ -1,9 +1,10 @@
 //! Where light comes from at a place: a density of directions and distances, from a solved table.
 
 use super::Solved;
-use super::certify::Sources;
+use super::sources::Sources;
 use crate::atmosphere::Chord;
 use crate::geometry::Place;
+use crate::transport::radiation::Scalar;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -218,13 +219,14 @@ fn entry<const L: usize>(sources: &Sources<'_, L>, place: Place, sun: DVec3, nor
         for (i, mass) in along.iter_mut().enumerate() {
             let (s, stretch) = way.at(&chord, (i as f64 + 0.5) / DISTANCES as f64);
             let through = chord.point(s).depth.map(|depth| (-depth).exp());
-            let source = sources.air(chord.place(place, direction, s), direction, sun, &mut harmonics);
+            let there = chord.place(place, direction, s);
+            let source = sources.air::<Scalar>(there, (direction, ()), sun, &mut harmonics);
             let light = std::array::from_fn(|j| through[j] * source.total[j] * stretch);
             *mass = counts(&light);
         }
         let mut mass = along.iter().sum::<f64>() / DISTANCES as f64;
         if chord.ends_on_ground() {
-            let source = sources.ground(chord.foot(place, direction), sun);
+            let source = sources.ground::<Scalar>(chord.foot(place, direction), sun);
             let total = chord.total();
             mass += counts(&std::array::from_fn(|j| (-total[j]).exp() * source.total[j]));
         }

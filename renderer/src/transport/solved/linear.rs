@@ -14,12 +14,14 @@
 //! scatters radiance by its own moments and sends out radiance alone, but for what onward.rs says.
 
 use super::Solved;
-use super::grid::{Between, Suns};
+use super::grid::Between;
 use super::harmonics::Moments;
 use super::line::Crossing;
 use super::orders::{Around, Batch, Field, Gathered, LANES, Turns, azimuth_cosines};
 use super::rays::{Line, Node};
 use super::view::Sight;
+use crate::geometry::Place;
+use crate::polarisation::{Frame, horizontal};
 use crate::vectors::add_scaled;
 use glam::DVec3;
 use std::f32::consts::PI;
@@ -139,10 +141,50 @@ impl<const L: usize> Gathered<L> {
     }
 }
 
-/// e1 of a line of sight: horizontal, towards growing azimuth; any horizontal direction of a vertical line.
-pub(super) fn horizontal(up: DVec3, direction: DVec3) -> DVec3 {
-    let across = up.cross(direction);
-    if across.length_squared() > 1e-16 { across.normalize() } else { direction.any_orthonormal_vector() }
+/// Cosine and sine of the azimuth of a direction from the sun's at a place with the vertical `up`; e1 = (-sin phi, cos phi, 0) is
+/// horizontal there, and e1 x up = (cos phi, sin phi, 0).
+#[inline(always)]
+fn azimuth(e1: DVec3, up: DVec3, sun: DVec3) -> [f32; 2] {
+    let (cos, sin) = (e1.cross(up).dot(sun), -e1.dot(sun));
+    let across = cos.hypot(sin);
+    if across > 1e-12 { [(cos / across) as f32, (sin / across) as f32] } else { [1.0, 0.0] }
+}
+
+impl<const L: usize> Solved<L> {
+    /// Moments of all suns at a level.
+    fn level(&self, level: usize) -> Level<'_, L> {
+        let (suns, moments) = (self.grid.suns.count(), &self.optics.moments);
+        Level { rows: &self.field.moments[level * suns * moments.count()..][..suns * moments.count()], moments }
+    }
+
+    /// Q and U of the sources at a place between levels, each with its share, in a direction looked in, where the species scatter by these
+    /// coefficients; and the frame of [`horizontal`], to which they are referred. Nothing but the peaks counts as not scattered,
+    /// so that of particles all that is of degree 2 is there.
+    #[inline(always)]
+    pub(super) fn diffuse_linear(
+        &self,
+        levels: &[(usize, f32)],
+        (place, direction, sun): (Place, DVec3, DVec3),
+        scattering: &[[f64; L]],
+    ) -> (Frame, Linear<L>) {
+        let up = place.up;
+        let e1 = horizontal(up, direction);
+        let Between { first: [first], weights } = self.grid.suns.locate(&[up.dot(sun) as f32]);
+        let [cos, sin] = azimuth(e1, up, sun);
+        let harmonics = harmonics(up.dot(direction).clamp(-1.0, 1.0)).map(|row| row.map(|v| v as f32));
+        let [q, u] = turned(&harmonics, cos, sin);
+        let dipoles = self.optics.onward.scattered(scattering).map(|row| row.map(|v| v as f32));
+        let mut sum = [[0.0; L]; 2];
+        for &(level, share) in levels {
+            let (level, weights) = (self.level(level), weights.map(|weight| share * weight[0]));
+            for m in 0..3 {
+                let source = level.source(first as usize, weights, m, &dipoles);
+                add_scaled(&mut sum[0], q[m], &source);
+                add_scaled(&mut sum[1], u[m], &source);
+            }
+        }
+        (Frame::new(direction, e1), sum)
+    }
 }
 
 impl<const L: usize> Sight<'_, L> {
@@ -150,23 +192,15 @@ impl<const L: usize> Sight<'_, L> {
     /// there times alpha and beta (onward.rs).
     #[inline(always)]
     pub(super) fn add_linear(&self, place: &Crossing, dipoles: &[[f64; L]; 2], sum: &mut [[f64; L]; 2]) {
-        let Solved { grid, optics, field, .. } = self.solved;
+        let grid = &self.solved.grid;
         let dipoles = dipoles.map(|row| row.map(|v| v as f32));
-        let position = self.position(place.s);
-        let up = position.normalize();
-        let suns: &Suns = &grid.suns;
-        let Between { first: [first], weights } = suns.locate(&[up.dot(self.sun) as f32]);
-        // The azimuth of the line from the sun's: e1 = (-sin phi, cos phi, 0), and e1 x up = (cos phi, sin phi, 0).
-        let first_axis = horizontal(self.from.up, self.direction);
-        let (cos, sin) = (first_axis.cross(up).dot(self.sun), -first_axis.dot(self.sun));
-        let across = cos.hypot(sin);
-        let (cos, sin) = if across > 1e-12 { (cos / across, sin / across) } else { (1.0, 0.0) };
+        let up = self.position(place.s).normalize();
+        let Between { first: [first], weights } = grid.suns.locate(&[up.dot(self.sun) as f32]);
+        let [cos, sin] = azimuth(horizontal(self.from.up, self.direction), up, self.sun);
         let zenith = (place.s / grid.level_radius(place.level)).clamp(-1.0, 1.0);
         let harmonics = harmonics(zenith).map(|row| row.map(|v| v as f32));
-        let [q, u] = turned(&harmonics, cos as f32, sin as f32);
-        let count = optics.moments.count();
-        let rows = &field.moments[place.level * suns.count() * count..][..suns.count() * count];
-        let level = Level { rows, moments: &optics.moments };
+        let [q, u] = turned(&harmonics, cos, sin);
+        let level = self.solved.level(place.level);
         let [sum_q, sum_u] = sum;
         for m in 0..3 {
             let source = level.source(first as usize, weights.map(|weight| weight[0]), m, &dipoles);
@@ -180,6 +214,7 @@ impl<const L: usize> Sight<'_, L> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::grid::Suns;
     use super::super::orders::AZIMUTHS;
     use super::*;
 

@@ -18,6 +18,7 @@
 
 mod aureole;
 mod certify;
+mod fan;
 mod file;
 mod first;
 mod grid;
@@ -30,7 +31,9 @@ mod onward;
 mod orders;
 mod panorama;
 mod rays;
+mod sources;
 mod species;
+mod tabled;
 #[cfg(test)]
 mod tests;
 mod view;
@@ -39,9 +42,9 @@ pub use certify::{Certificate, Certified, Fan};
 pub use grid::{Fineness, Resolution};
 pub use panorama::Panorama;
 
+use super::directions;
 use crate::atmosphere::{Columns, Medium, MediumError, Tolerance};
 use crate::geometry::{Place, Shape};
-use crate::sampling::spiral;
 use crate::vectors::vectorised;
 use aureole::Aureole;
 use first::{Scattering, Sunlight};
@@ -116,6 +119,22 @@ struct Reach {
 }
 
 impl<const L: usize> Optics<L> {
+    /// By how much scattering that is taken to go straight on outweighs the rest, f / (1 - f) - 1 where that is positive: the mean over the
+    /// species, weighed by what they scatter above the ground. 0 unless phase functions have most of their light in moments beyond the
+    /// last.
+    fn in_peaks(&self) -> [f64; L] {
+        let columns = self.medium.columns(Shape::Flat, Place::above(0.0), DVec3::Z).unwrap_or_default();
+        let (mut sum, mut whole) = ([0.0; L], [0.0; L]);
+        for one in &self.species {
+            for (j, f) in one.straight().into_iter().enumerate() {
+                let scattered = columns[one.component] * one.scattering[j] * one.whole[j];
+                whole[j] += scattered;
+                sum[j] += scattered * (f / (1.0 - f) - 1.0).max(0.0);
+            }
+        }
+        std::array::from_fn(|j| if whole[j] > 0.0 { sum[j] / whole[j] } else { 0.0 })
+    }
+
     /// Which moments count where the species have these weights; none if they have none.
     #[inline(always)]
     fn reach(&self, weights: &[[f64; L]]) -> Option<Reach> {
@@ -181,10 +200,10 @@ impl Resolution {
 pub struct Tables<const L: usize> {
     /// The finest.
     pub solved: Solved<L>,
-    /// The next coarser, from which the error of the finest follows; none of a table whose grid was chosen.
-    coarser: Option<Solved<L>>,
-    /// What the two do not show.
-    hidden: f64,
+    /// The next coarser, from which the error of the finest follows.
+    coarser: Solved<L>,
+    /// What the two do not show, of each wavelength.
+    hidden: [f64; L],
 }
 
 /// What [`Resolution::RENDER`] and the one below it leave out alike where phase functions have peaks: moments beyond the last, mostly at the
@@ -193,44 +212,43 @@ const HIDDEN: f64 = 3e-3;
 
 impl<const L: usize> Tables<L> {
     /// Solves for `air` (medium, form of the planet, albedo of the ground; whether of polarised light or of radiance alone) on finer grids
-    /// until the table states at most this error for an observer and a sun, or there is none finer. `kept` as in [`Solved::kept`].
+    /// until the table states at most this error for an observer, a sun and the directions of a picture ([`Tables::error`]), or there is
+    /// none finer. `kept` as in [`Solved::kept`].
     ///
     /// # Errors
     /// As [`Solved::kept`].
     pub fn within(
         error: f64,
-        (from, sun): (Place, DVec3),
+        (from, sun, looks): (Place, DVec3, &[DVec3]),
         air: (&Medium<L>, Shape, [f64; L], bool),
         kept: Option<&Path>,
     ) -> Result<Self, SolveError> {
+        covers_planet(air.1)?;
         let coarser = Solved::of(air, &Resolution::COARSE, kept)?;
         let solved = coarser.again(&Resolution::RENDER, kept)?;
-        let hidden = if solved.optics.moments.degree() > 2 { HIDDEN } else { 0.0 };
-        let usual = Self { solved, coarser: Some(coarser), hidden };
-        if usual.error(from, sun).is_some_and(|stated| stated <= error) {
+        let few = if solved.optics.moments.degree() > 2 { HIDDEN } else { 0.0 };
+        let hidden = solved.optics.in_peaks().map(|share| few + HIDDEN * share);
+        let usual = Self { solved, coarser, hidden };
+        if usual.error(from, sun, looks) <= error {
             return Ok(usual);
         }
         let solved = Solved::of(air, &Resolution::FINE, kept)?;
-        Ok(Self { solved, coarser: Some(usual.solved), hidden: 0.0 })
+        let hidden = solved.optics.in_peaks().map(|share| HIDDEN * share);
+        Ok(Self { solved, coarser: usual.solved, hidden })
     }
 
-    /// Solves on one grid alone, which then states no error.
-    ///
-    /// # Errors
-    /// As [`Solved::kept`].
-    pub fn alone(
-        fineness: Fineness,
-        air: (&Medium<L>, Shape, [f64; L], bool),
-        kept: Option<&Path>,
-    ) -> Result<Self, SolveError> {
-        Ok(Self { solved: Solved::of(air, &fineness.resolution(), kept)?, coarser: None, hidden: 0.0 })
-    }
-
-    /// What the table states: how far it is off at an observer with the sun in that unit direction; none of a grid alone.
+    /// What the table states: how far it is off at an observer with the sun in that unit direction, rms over the wavelengths and the
+    /// directions looked in; all about the observer if there are none ([`Solved::difference`]).
     #[must_use]
-    pub fn error(&self, from: Place, sun: DVec3) -> Option<f64> {
-        let coarser = self.coarser.as_ref()?;
-        Some((FINER * self.solved.difference(coarser, from, sun)).hypot(self.hidden))
+    pub fn error(&self, from: Place, sun: DVec3, looks: &[DVec3]) -> f64 {
+        mean_square(&self.errors(from, sun, looks)).sqrt()
+    }
+
+    /// As [`Tables::error`], of each wavelength.
+    #[must_use]
+    pub fn errors(&self, from: Place, sun: DVec3, looks: &[DVec3]) -> [f64; L] {
+        let off = self.solved.differences(&self.coarser, from, sun, looks);
+        std::array::from_fn(|j| (FINER * off[j]).hypot(self.hidden[j]))
     }
 }
 
@@ -239,6 +257,26 @@ pub const FINER: f64 = 0.5;
 
 /// Why planes are refused.
 const ROUND: &str = "solved tables need a round planet: take --method paths";
+
+/// Radii in m of the planets whose tables are as exact as those of the Earth: suns are crowded where they set, over an angle that
+/// goes as the root of the height of the air over the radius, which must be neither all of the sky nor next to none of it.
+const LEAST_RADIUS_M: f64 = 3e5;
+const MOST_RADIUS_M: f64 = 1e8;
+
+/// Why other radii are refused.
+const RADII: &str = "solved tables are of planets with radii from 300 to 100 000 km: take --method paths";
+
+/// Whether solved tables state their errors honestly over a planet of that form (`airlight study stability`, planets-solved).
+///
+/// # Errors
+/// [`SolveError::Refused`] with the radii, or of a plane.
+pub fn covers_planet(shape: Shape) -> Result<(), SolveError> {
+    match shape {
+        Shape::Flat => Err(SolveError::Refused(ROUND)),
+        Shape::Sphere { radius_m } if (LEAST_RADIUS_M..=MOST_RADIUS_M).contains(&radius_m) => Ok(()),
+        Shape::Sphere { .. } => Err(SolveError::Refused(RADII)),
+    }
+}
 
 /// Why a resolution is refused.
 const SIZES: &str = "a solved table has at least 4 levels, 4 suns and 1 step between levels, and degrees up to 24";
@@ -290,7 +328,10 @@ impl<const L: usize> Solved<L> {
     }
 
     /// As [`Solved::kept`], of polarised light or of radiance alone.
-    fn of(
+    ///
+    /// # Errors
+    /// As [`Solved::kept`].
+    pub fn of(
         (medium, shape, albedo, polarised): (&Medium<L>, Shape, [f64; L], bool),
         resolution: &Resolution,
         kept: Option<&Path>,
@@ -361,27 +402,43 @@ impl<const L: usize> Solved<L> {
     }
 
     /// Root mean square over 64 directions and all wavelengths of the difference to the radiances of another solution of the same
-    /// atmosphere, over their mean at the wavelength, at an observer with the sun in that unit direction; of the directions in
-    /// which the planet lies if the observer is above its air. 0 where it is dark.
+    /// atmosphere, over the lesser of their means at the wavelength, at an observer with the sun in that unit direction; of the directions in
+    /// which the planet lies if the observer is above its air. 0 where both are dark, infinite where one is.
     #[must_use]
     pub fn difference(&self, other: &Self, from: Place, sun: DVec3) -> f64 {
-        const DIRECTIONS: u32 = 64;
-        let (mut squares, mut means) = ([0.0; L], [0.0; L]);
-        // From above the air only the planet is looked at.
-        let top = self.grid.radius + self.optics.medium.top_m();
-        let least = (top / (self.grid.radius + from.altitude_m)).min(1.0);
-        let highest = if least < 1.0 { -((1.0 - least) * (1.0 + least)).sqrt() } else { 1.0 };
-        for i in 0..DIRECTIONS {
-            let direction = spiral(i, DIRECTIONS, [-1.0, highest]);
+        mean_square(&self.differences(other, from, sun, &[])).sqrt()
+    }
+
+    /// As [`Solved::difference`], of each wavelength, in certain directions if there are any.
+    fn differences(&self, other: &Self, from: Place, sun: DVec3, looks: &[DVec3]) -> [f64; L] {
+        let (mut squares, mut means) = ([0.0; L], [[0.0; L]; 2]);
+        let shape = Shape::Sphere { radius_m: self.grid.radius };
+        let around: Vec<DVec3>;
+        let looks = if looks.is_empty() {
+            around = directions(from, shape, self.optics.medium.top_m()).collect();
+            &around
+        } else {
+            looks
+        };
+        for &direction in looks {
             let [a, b] = [self, other].map(|solved| solved.radiance(from, direction, sun, false));
             for j in 0..L {
-                squares[j] += (a[j] - b[j]).powi(2) / f64::from(DIRECTIONS);
-                means[j] += a[j] / f64::from(DIRECTIONS);
+                squares[j] += (a[j] - b[j]).powi(2) / looks.len() as f64;
+                means[0][j] += a[j] / looks.len() as f64;
+                means[1][j] += b[j] / looks.len() as f64;
             }
         }
-        let lit = squares.iter().zip(means).filter(|(_, mean)| *mean > 0.0);
-        let sum = lit.fold(0.0, |sum, (square, mean)| sum + square / (mean * mean));
-        (sum / L as f64).sqrt()
+        std::array::from_fn(|j| {
+            let mean = means[0][j].min(means[1][j]);
+            // Nothing is off where both are dark; where only one is, or cubics swing below zero, nothing is known.
+            if squares[j] == 0.0 {
+                0.0
+            } else if mean > 0.0 {
+                squares[j].sqrt() / mean
+            } else {
+                f64::INFINITY
+            }
+        })
     }
 
     /// Orders of scattering that were computed, and the relative change that the last of them made.
@@ -419,7 +476,7 @@ impl<const L: usize> Setup<'_, L> {
             Field { moments: parts.into_iter().flat_map(|(moments, _)| moments).collect(), ground }
         };
         let first = collect(&|level| {
-            vectorised(First {
+            vectorised::<L, _>(First {
                 setup: self,
                 level,
                 lines: &lines[level].lines,
@@ -431,7 +488,7 @@ impl<const L: usize> Setup<'_, L> {
         let step = |field: &Field<L>| {
             collect(&|level| {
                 let (moments, suns) = (&self.optics.moments, &self.grid.suns);
-                vectorised(Next { around: Around { lines: &lines[level], moments, suns, reflected }, field })
+                vectorised::<L, _>(Next { around: Around { lines: &lines[level], moments, suns, reflected }, field })
             })
         };
         let mut mixer = Mixer::new(&first, self.optics.moments.count());
@@ -493,6 +550,10 @@ impl<const L: usize> NullaryFnOnce for Next<'_, L> {
             self.around.scatter::<FEW_AZIMUTHS>(self.field)
         }
     }
+}
+
+fn mean_square(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64
 }
 
 fn add<const L: usize>(field: &mut Field<L>, other: &Field<L>) {

@@ -31,6 +31,8 @@ pub(super) struct Onward<const L: usize> {
     depths: Vec<(Columns<1>, [f64; L])>,
     /// alpha and beta of each species.
     kernels: Vec<[[f64; L]; 2]>,
+    /// alpha where nothing but the peak counts as not scattered: 5/(24 pi) h_2.
+    full: Vec<[f64; L]>,
 }
 
 /// A line through it.
@@ -45,14 +47,17 @@ impl<const L: usize> Onward<L> {
         for one in species {
             if one.is_molecular() {
                 all.kernels.push([one.coefficients[2]; 2]);
+                all.full.push(one.coefficients[2]);
                 continue;
             }
             let ([ahead, second, natural], straight) = (integrals(&one.phase), one.straight());
             let left =
                 |share: [f64; L]| -> [f64; L] { std::array::from_fn(|j| (share[j] - straight[j]) * one.whole[j]) };
             let (on, second) = (left(ahead).map(|share| share.clamp(0.0, 1.0)), left(second));
+            let alpha = |share: f64, j: usize| 5.0 / (24.0 * PI) * share * f64::from(natural[j] != 0.0);
+            all.full.push(std::array::from_fn(|j| alpha(second[j], j)));
             all.kernels.push([
-                std::array::from_fn(|j| 5.0 / (24.0 * PI) * (second[j] - on[j]) * f64::from(natural[j] != 0.0)),
+                std::array::from_fn(|j| alpha(second[j] - on[j], j)),
                 std::array::from_fn(|j| -0.625 * natural[j] * one.whole[j]),
             ]);
             if on.iter().any(|&share| share > LEAST) {
@@ -60,6 +65,20 @@ impl<const L: usize> Onward<L> {
             }
         }
         Ok(all)
+    }
+
+    /// Sums over the species of their scattering coefficients times alpha and beta, with nothing of Q and U but the peak for not
+    /// scattered.
+    #[inline(always)]
+    pub(super) fn scattered(&self, scattering: &[[f64; L]]) -> [[f64; L]; 2] {
+        let mut sums = [[0.0; L]; 2];
+        for (([_, beta], alpha), scattering) in self.kernels.iter().zip(&self.full).zip(scattering) {
+            for j in 0..L {
+                sums[0][j] += alpha[j] * scattering[j];
+                sums[1][j] += beta[j] * scattering[j];
+            }
+        }
+        sums
     }
 
     #[inline(always)]

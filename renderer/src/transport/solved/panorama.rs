@@ -11,7 +11,7 @@
 //! direction is looked at by itself.
 
 use super::line::MOST_SPECIES;
-use super::view::{Look, See, Seen};
+use super::view::{Look, Seen};
 use super::{Optics, Solved};
 use crate::geometry::Place;
 use crate::polarisation::{Frame, Stokes};
@@ -107,7 +107,7 @@ impl<const L: usize> Panorama<L> {
     #[must_use]
     pub fn radiance(&self, solved: &Solved<L>, direction: DVec3) -> [f64; L] {
         match self.place(direction) {
-            Some((nodes, at, _)) => vectorised(Glance { solved, nodes, at, towards: direction.dot(self.sun) }),
+            Some((nodes, at, _)) => vectorised::<L, _>(Glance { solved, nodes, at, towards: direction.dot(self.sun) }),
             None => solved.radiance(self.from, direction, self.sun, false),
         }
     }
@@ -120,7 +120,7 @@ impl<const L: usize> Panorama<L> {
         let Some((nodes, at, right)) = place else {
             return solved.stokes(self.from, direction, frame, self.sun, false);
         };
-        let mut seen = vectorised(Interpolation(nodes, at));
+        let mut seen = vectorised::<L, _>(Interpolation(nodes, at));
         if right {
             seen.linear[1] = seen.linear[1].map(|u| -u);
         }
@@ -197,7 +197,7 @@ impl<const L: usize> Survey<'_, L> {
         let look = |i: usize| {
             let direction = self.all.direction(zenith, i as f64 / azimuths as f64);
             let look = Look { solved: self.solved, from, direction, sun, single: false, sunlight };
-            (direction, vectorised(See(look)))
+            (direction, vectorised::<L, _>(look))
         };
         (0..=azimuths).filter(|i| !only_odd || i % 2 == 1).map(look).collect()
     }
@@ -288,14 +288,14 @@ impl<const L: usize> Survey<'_, L> {
     /// Whether nodes show what is seen.
     fn is_good(&self, nodes: &Nodes<L>, at: [f64; 2], (direction, seen): &Looked<L>) -> bool {
         let towards = direction.dot(self.all.sun);
-        let found = vectorised(Glance { solved: self.solved, nodes, at, towards });
+        let found = vectorised::<L, _>(Glance { solved: self.solved, nodes, at, towards });
         let right = self.solved.shade(seen, towards, false);
         let near = |found: &f64, seen: f64, radiance: f64| (found - seen).abs() <= self.error * radiance.abs();
         let good = found.iter().zip(right).all(|(found, right)| near(found, right, right));
         if !good || !self.solved.is_polarised() {
             return good;
         }
-        let shown = vectorised(Interpolation(nodes, at));
+        let shown = vectorised::<L, _>(Interpolation(nodes, at));
         let rows = shown.linear.iter().zip(&seen.linear);
         rows.flat_map(|(shown, seen)| shown.iter().zip(seen).zip(right)).all(|((a, b), right)| near(a, *b, right))
     }

@@ -110,7 +110,7 @@ pub(super) fn moments<const L: usize>(phase: &Phase<L>, last: usize) -> Vec<[f64
             chi
         }
         Phase::HenyeyGreenstein { g } => (0..=last).map(|l| g.map(|g| g.powi(l as i32))).collect(),
-        Phase::Tabulated(table) => vectorised(Tabulation { table, phase, last }),
+        Phase::Tabulated(table) => vectorised::<L, _>(Tabulation { table, phase, last }),
     }
 }
 

@@ -5,8 +5,11 @@ use super::*;
 use crate::atmosphere::Component;
 use crate::light::SunDisc;
 use crate::phase::Phase;
+use crate::sampling::spiral;
 use crate::transport::{Estimator, Problem};
 use tables::{Axis, Curve, Outside, Scale};
+
+mod certified;
 
 /// As fine as tests need.
 const TEST: Resolution = Resolution { levels: 18, suns: 36, zeniths: [6, 4, 5], parts: 4, degree: 12, change: 5e-4 };
@@ -171,15 +174,16 @@ fn the_width_of_vectors_makes_no_difference() {
     let (from, direction, sun) = (Place::above(2.0), towards(70.0, 10.0), towards(88.0, 0.0));
     let sunlight = &solved.optics.columns;
     let look = view::Look { solved: &solved, from, direction, sun, single: false, sunlight };
-    assert_eq!(look.call(), solved.radiance(from, direction, sun, false));
+    let seen = look.call();
+    assert_eq!(solved.shade(&seen, direction.dot(sun), false), solved.radiance(from, direction, sun, false));
     let setup = Setup { grid: &solved.grid, optics: &solved.optics };
     let lines = Lines::new(&setup, 3, &solved.grid.zeniths(3, coarse.zeniths));
     let (sunlight, scattering) = (Sunlight::new(&setup, 2), Scattering::new(&setup));
     let first = || First { setup: &setup, level: 3, lines: &lines.lines, sunlight: &sunlight, scattering: &scattering };
-    assert_eq!(first().call(), vectorised(first()));
+    assert_eq!(first().call(), vectorised::<4, _>(first()));
     let (moments, suns) = (&solved.optics.moments, &solved.grid.suns);
     let next = || Next { around: Around { lines: &lines, moments, suns, reflected: [0.1; 4] }, field: &solved.field };
-    assert_eq!(next().call(), vectorised(next()));
+    assert_eq!(next().call(), vectorised::<4, _>(next()));
 }
 
 #[test]

@@ -4,7 +4,6 @@ use super::aureole::Through;
 use super::grid::Between;
 use super::harmonics::MOST_DEGREE;
 use super::line::{Crossing, MOST_SPECIES, Rule, Spread, Stencil, Take, crossings, quadrature};
-use super::linear::horizontal;
 use super::onward::{Ahead, Dipoles};
 use super::{Optics, Solved};
 use crate::atmosphere::{Chord, Columns};
@@ -22,7 +21,7 @@ impl<const L: usize> Solved<L> {
     /// scattered or reflected once.
     #[must_use]
     pub fn radiance(&self, from: Place, direction: DVec3, sun: DVec3, single: bool) -> [f64; L] {
-        vectorised(Look { solved: self, from, direction, sun, single, sunlight: &self.optics.columns })
+        self.seen_as_light(Look { solved: self, from, direction, sun, single, sunlight: &self.optics.columns })
     }
 
     /// Radiance of sunlight scattered or reflected once that arrives where it is with the extinction of these columns; from there on it
@@ -34,7 +33,13 @@ impl<const L: usize> Solved<L> {
         sun: DVec3,
         sunlight: &Columns<L>,
     ) -> [f64; L] {
-        vectorised(Look { solved: self, from, direction, sun, single: true, sunlight })
+        self.seen_as_light(Look { solved: self, from, direction, sun, single: true, sunlight })
+    }
+
+    fn seen_as_light(&self, look: Look<'_, L>) -> [f64; L] {
+        let (towards, single) = (look.direction.dot(look.sun), look.single);
+        let seen = &vectorised::<L, _>(look);
+        vectorised::<L, _>(Shade { solved: self, seen, towards, single })
     }
 
     /// As [`Solved::radiance`], its Stokes parameters in `frame`, one of `direction`. A table that was solved without polarisation knows Q
@@ -42,7 +47,7 @@ impl<const L: usize> Solved<L> {
     #[must_use]
     pub fn stokes(&self, from: Place, direction: DVec3, frame: Frame, sun: DVec3, single: bool) -> [Stokes; L] {
         let sunlight = &self.optics.columns;
-        let seen = vectorised(See(Look { solved: self, from, direction, sun, single, sunlight }));
+        let seen = vectorised::<L, _>(Look { solved: self, from, direction, sun, single, sunlight });
         self.show(&seen, (from, direction, frame), sun, single)
     }
 
@@ -65,7 +70,7 @@ impl<const L: usize> Solved<L> {
                 once[j] += matrix[j].b1 * one.whole[j] * light[j];
             }
         }
-        let level = Frame::new(direction, horizontal(from.up, direction));
+        let level = Frame::level(from.up, direction);
         let (plane, turn) = (frame.of_scattering(direction, sun).0, level.turn_to(frame, direction));
         std::array::from_fn(|j| {
             let [q, u] = seen.linear.map(|row| row[j]);
@@ -271,24 +276,28 @@ pub(super) struct Look<'a, const L: usize> {
 }
 
 impl<const L: usize> NullaryFnOnce for Look<'_, L> {
-    type Output = [f64; L];
-
-    #[inline(always)]
-    fn call(self) -> [f64; L] {
-        let seen = self.solved.look(&self);
-        self.solved.shade(&seen, self.direction.dot(self.sun), self.single)
-    }
-}
-
-/// A look with what it sees.
-pub(super) struct See<'a, const L: usize>(pub(super) Look<'a, L>);
-
-impl<const L: usize> NullaryFnOnce for See<'_, L> {
     type Output = Seen<L>;
 
     #[inline(always)]
     fn call(self) -> Seen<L> {
-        self.0.solved.look(&self.0)
+        self.solved.look(&self)
+    }
+}
+
+/// Radiance of what is seen.
+struct Shade<'a, const L: usize> {
+    solved: &'a Solved<L>,
+    seen: &'a Seen<L>,
+    towards: f64,
+    single: bool,
+}
+
+impl<const L: usize> NullaryFnOnce for Shade<'_, L> {
+    type Output = [f64; L];
+
+    #[inline(always)]
+    fn call(self) -> [f64; L] {
+        self.solved.shade(self.seen, self.towards, self.single)
     }
 }
 

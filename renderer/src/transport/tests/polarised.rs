@@ -8,7 +8,7 @@ mod tables;
 
 /// A matrix of spheres of a kind, on 181 nodes: P12^2 + P33^2 + P34^2 = P11^2 with all three of them there, and straight
 /// on and back P33 = +-P11 alone.
-fn spheres<const L: usize>(forward: [f64; L]) -> Phase<L> {
+pub(in crate::transport) fn spheres<const L: usize>(forward: [f64; L]) -> Phase<L> {
     let cosines: Vec<f64> = (0..=180).map(|i| -f64::from(i).to_radians().cos()).collect();
     let values = cosines.iter().map(|c| forward.map(|k| (k * c).exp())).collect();
     let ratios = cosines.iter().map(|c| {
@@ -21,7 +21,7 @@ fn spheres<const L: usize>(forward: [f64; L]) -> Phase<L> {
 }
 
 /// Molecules and particles at two wavelengths.
-fn hazy() -> Medium<2> {
+pub(in crate::transport) fn hazy() -> Medium<2> {
     let top = 6e4;
     let component = |height: f64, scattering: [f64; 2], absorption: [f64; 2], phase: Phase<2>| Component {
         density: super::exponential(height, top),
@@ -40,7 +40,7 @@ fn air(gamma: f64) -> Medium<1> {
 }
 
 /// The frame of a direction with e1 horizontal.
-fn level(direction: DVec3) -> Frame {
+pub(in crate::transport) fn level(direction: DVec3) -> Frame {
     Frame::new(direction, DVec3::Z.cross(direction).normalize())
 }
 
@@ -67,7 +67,7 @@ impl Moments {
 }
 
 /// Mean and standard error of I, Q and U of `n` estimates at each wavelength, in the frame of [`level`].
-fn means<const L: usize>(
+pub(in crate::transport) fn means<const L: usize>(
     method: Estimator,
     problem: &Problem<'_, L>,
     from: Place,

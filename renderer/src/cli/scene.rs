@@ -1,0 +1,65 @@
+//! `airlight scene`.
+
+use super::args::SceneCommand;
+use super::output::println;
+use super::render::{read_scene, sky};
+use super::{Failure, Outcome, unwritable};
+use crate::data::Data;
+use crate::scene::{Scene, schema};
+use std::io::Write;
+use std::path::Path;
+
+/// What a new file begins with.
+const HEAD: &str = "\
+# A scene of airlight: airlight render FILE.toml
+# Every key is here with its default; take the # away from those that shall say something else.
+
+";
+
+pub(super) fn run(command: &SceneCommand) -> Result<Outcome, Failure> {
+    match command {
+        SceneCommand::New { file } => new(file.as_deref()),
+        SceneCommand::Check { scenes, data } => {
+            let data = Data::load(data).map_err(Failure::error)?;
+            scenes.iter().try_for_each(|path| check(path, &data)).map(|()| Outcome::Done)
+        }
+        SceneCommand::Show { scene, all, json } => {
+            let scene = read_scene(scene, &[])?;
+            let text = if *json { scene.to_json() } else { scene.to_toml(*all) };
+            println!("{}", text.trim_end());
+            Ok(Outcome::Done)
+        }
+        SceneCommand::Schema => {
+            println!("{}", serde_json::to_string_pretty(&schema()).map_err(Failure::error)?);
+            Ok(Outcome::Done)
+        }
+    }
+}
+
+fn new(file: Option<&Path>) -> Result<Outcome, Failure> {
+    let text = format!("{HEAD}{}", Scene::default().to_toml(true));
+    let Some(path) = file else {
+        println!("{}", text.trim_end());
+        return Ok(Outcome::Done);
+    };
+    // What is there is somebody's work.
+    let made = std::fs::OpenOptions::new().write(true).create_new(true).open(path);
+    made.and_then(|mut file| file.write_all(text.as_bytes())).map_err(|error| unwritable(path, &error))?;
+    println!("{}", path.display());
+    Ok(Outcome::Done)
+}
+
+/// Everything but the rendering.
+fn check(path: &Path, data: &Data) -> Result<(), Failure> {
+    let at = |failure: Failure| Failure { message: format!("{}: {}", path.display(), failure.message), ..failure };
+    let scene = read_scene(path, &[])?;
+    scene.validate().map_err(|error| at(error.into()))?;
+    // Without solving: a single scattering of the same air names the same tables.
+    let quick = Scene { method: crate::transport::Method::Single, ..scene.clone() };
+    let answers = if scene.method == crate::transport::Method::Solved { &quick } else { &scene };
+    sky(answers, data, None).map_err(at)?;
+    let (width, height) = scene.size();
+    let sun = format!("the sun {:.2} degrees high", scene.sun_elevation_deg);
+    println!("{}: {width} x {height} pixels of {} wavelengths, {sun}", path.display(), scene.wavelengths().nm().len());
+    Ok(())
+}

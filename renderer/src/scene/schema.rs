@@ -1,0 +1,51 @@
+//! The JSON schema of scene files, for editors and for checks of keys.
+
+use super::Scene;
+use schemars::{Schema, SchemaGenerator, json_schema};
+use serde::Serialize;
+use std::sync::LazyLock;
+use tables::views::{AerosolSource, Biome};
+
+/// The schema of a scene (JSON Schema 2020-12): each key with its meaning, unit, range and default.
+#[must_use]
+pub fn schema() -> Schema {
+    schemars::schema_for!(Scene)
+}
+
+/// All keys of a scene, in the order of its fields.
+pub(super) fn keys() -> &'static [String] {
+    static KEYS: LazyLock<Vec<String>> = LazyLock::new(|| {
+        let properties = schema().get("properties").and_then(serde_json::Value::as_object).cloned();
+        properties.unwrap_or_default().into_iter().map(|(key, _)| key).collect()
+    });
+    &KEYS
+}
+
+/// One of some words.
+fn words<T: Serialize>(words: &[T]) -> Schema {
+    json_schema!({ "type": "string", "enum": words })
+}
+
+pub(super) fn biome(_: &mut SchemaGenerator) -> Schema {
+    words(&Biome::ALL.map(Biome::name).into_iter().chain([super::names::word::NONE]).collect::<Vec<_>>())
+}
+
+pub(super) fn aerosol_source(_: &mut SchemaGenerator) -> Schema {
+    words(&AerosolSource::ALL.map(AerosolSource::name))
+}
+
+pub(super) fn method(_: &mut SchemaGenerator) -> Schema {
+    words(&crate::transport::Method::ALL)
+}
+
+pub(super) fn albedo(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "anyOf": [{ "type": "number", "minimum": 0, "maximum": 1 }, { "type": "string" }] })
+}
+
+pub(super) fn wavelengths(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "array", "items": { "type": "number" }, "minItems": 1 })
+}
+
+pub(super) fn date(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": ["string", "null"], "format": "date-time" })
+}

@@ -1,0 +1,111 @@
+//! Light that places send, by a solved table with the true sunlight: what certificates end in.
+
+use super::line::MOST_SPECIES;
+use super::tabled::Tabled;
+use super::{Optics, Solved};
+use crate::atmosphere::Columns;
+use crate::geometry::Place;
+use glam::DVec3;
+use std::f64::consts::FRAC_1_PI;
+
+/// Light that a place sends into a direction, per length or from the ground.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Source<R: Tabled, const L: usize> {
+    /// S_1 + S.
+    pub(super) total: [R::Seen; L],
+    /// S.
+    pub(super) tail: [R::Seen; L],
+}
+
+/// The table's sources with the true sunlight.
+#[derive(Debug)]
+pub(super) struct Sources<'a, const L: usize> {
+    pub(super) solved: &'a Solved<L>,
+    /// Columns of the true air.
+    pub(super) truth: &'a Columns<L>,
+    /// Those of the table's air, if that is another.
+    pub(super) scaled: Option<&'a Columns<L>>,
+}
+
+impl<'a, const L: usize> Sources<'a, L> {
+    pub(super) fn optics(&self) -> &Optics<L> {
+        &self.solved.optics
+    }
+
+    /// Columns of the table's air.
+    #[inline(always)]
+    pub(super) fn columns(&self) -> &'a Columns<L> {
+        self.scaled.unwrap_or(self.truth)
+    }
+
+    /// Scattering coefficients of the species, without what goes straight on.
+    #[inline(always)]
+    pub(super) fn scattering(&self, altitude: f64) -> [[f64; L]; MOST_SPECIES] {
+        let densities = self.optics().medium.densities_at(altitude);
+        let mut scattering = [[0.0; L]; MOST_SPECIES];
+        for (all, one) in scattering.iter_mut().zip(&self.optics().species) {
+            let density = densities[one.component];
+            *all = one.scattering.map(|sigma| density * sigma);
+        }
+        scattering
+    }
+
+    /// Sunlight that arrives with the table's extinction and with the true one; none in the planet's shadow.
+    #[inline(always)]
+    fn sunlight(&self, place: Place, sun: DVec3) -> Option<[[f64; L]; 2]> {
+        let truly = self.truth.transmittance(place, sun)?;
+        let Some(scaled) = self.scaled else { return Some([truly; 2]) };
+        Some([scaled.transmittance(place, sun)?, truly])
+    }
+
+    /// Of a metre of air into the direction looked in, referred to `frame`, in m^-1 sr^-1 per unit solar irradiance.
+    #[inline(always)]
+    pub(super) fn air<R: Tabled>(
+        &self,
+        place: Place,
+        (direction, frame): (DVec3, R::Frame),
+        sun: DVec3,
+        harmonics: &mut Vec<f64>,
+    ) -> Source<R, L> {
+        let (solved, species) = (self.solved, &self.optics().species);
+        let scattering = self.scattering(place.altitude_m);
+        let levels = &solved.grid.levels;
+        let above = levels.partition_point(|&level| level <= place.altitude_m).clamp(1, levels.len() - 1);
+        let (a, b) = (levels[above - 1], levels[above]);
+        let share = ((place.altitude_m - a) / (b - a)) as f32;
+        let rows = [(above - 1, 1.0 - share), (above, share)];
+        let tail = R::diffuse(solved, &rows, (place, direction, sun), frame, &scattering[..species.len()], harmonics);
+        let mut source = Source { total: tail, tail };
+        if let Some([through, truly]) = self.sunlight(place, sun) {
+            let (turn, cosine) = (R::plane(frame, direction, sun).0, direction.dot(sun));
+            for (one, scattering) in species.iter().zip(&scattering) {
+                let natural = R::natural(&one.phase, cosine);
+                for j in 0..L {
+                    let scattered = natural[j] * (scattering[j] * one.whole[j]);
+                    source.total[j] += R::see_scattered(&R::OBSERVER, turn, scattered, through[j]);
+                    source.tail[j] += R::see_scattered(&R::OBSERVER, turn, scattered, through[j] - truly[j]);
+                }
+            }
+        }
+        source
+    }
+
+    /// Of the ground, in sr^-1: natural light.
+    #[inline(always)]
+    pub(super) fn ground<R: Tabled>(&self, foot: Place, sun: DVec3) -> Source<R, L> {
+        let reflected = self.optics().albedo.map(|albedo| albedo * FRAC_1_PI);
+        let mut tail = self.solved.diffuse_irradiance(foot, sun);
+        let mut total = tail;
+        let cosine = foot.up.dot(sun);
+        if cosine > 0.0
+            && let Some([through, truly]) = self.sunlight(foot, sun)
+        {
+            for j in 0..L {
+                total[j] += cosine * through[j];
+                tail[j] += cosine * (through[j] - truly[j]);
+            }
+        }
+        let reflect = |light: [f64; L]| std::array::from_fn(|j| R::see(&R::OBSERVER, reflected[j] * light[j]));
+        Source { total: reflect(total), tail: reflect(tail) }
+    }
+}
