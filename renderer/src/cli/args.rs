@@ -140,7 +140,8 @@ pub(super) struct RenderArgs {
     /// [default: off; on without a word]
     #[arg(long, num_args = 0..=1, default_missing_value = "on", require_equals = true, help_heading = "Camera")]
     pub polarisation: Option<Switch>,
-    /// Follow light with its polarisation, but keep radiance alone in the picture [default: off; on without a word]
+    /// Follow light with its polarisation, but keep radiance alone in the picture [default: on, unless leaving it out is known to cost less
+    /// than --table-error, or --error of a traced picture; on without a word]
     #[arg(long, num_args = 0..=1, default_missing_value = "on", require_equals = true, help_heading = "Camera")]
     pub follow_polarisation: Option<Switch>,
     /// A polarising filter before the camera, its axis so many degrees from the horizontal of each pixel, anticlockwise as one
@@ -583,7 +584,8 @@ impl RenderArgs {
                 .map_or(base.polarisation && self.filter.is_none(), |switch| switch == Switch::On),
             follow_polarisation: self
                 .follow_polarisation
-                .map_or(base.follow_polarisation, |switch| switch == Switch::On),
+                .map(|switch| switch == Switch::On)
+                .or(base.follow_polarisation),
             filter_deg: self.filter.or(base.filter_deg.filter(|_| self.polarisation != Some(Switch::On))),
             colour: self.colour.unwrap_or(base.colour),
             method: self.method.map_or(base.method, Into::into),

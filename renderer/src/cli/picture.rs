@@ -113,8 +113,8 @@ impl Product<'_> {
         }
         if !args.quiet {
             describe(scene, sky, summary, rendering, &head.parts);
-            if !scene.is_polarised() {
-                describe_left_out(&LeftOut::of(scene, sky), scene.error.filter(|_| !sky.is_solved()));
+            if !scene.polarisation && scene.filter_deg.is_none() {
+                describe_left_out(&LeftOut::of(scene, sky.air(), sky.albedo()), sky.is_polarised());
             }
             if let Some(verdict) = verdict {
                 describe_verdict(verdict, sky.sun_direction(), scene.filter_deg.is_some());
@@ -271,21 +271,19 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, 
     );
 }
 
-/// What it costs that the picture has no polarisation, or in what the scene lies outside the measurements; of a traced picture
-/// also whether the error that was asked calls for it.
-fn describe_left_out(left_out: &Result<LeftOut, String>, asked: Option<f64>) {
+/// What it costs, or would cost where polarisation is followed, to leave it out, or in what the scene lies outside the measurements.
+fn describe_left_out(left_out: &Result<LeftOut, String>, followed: bool) {
     let of = |Off { rms, worst, error }: Off| {
         let [rms, worst, error] = [rms, worst, error].map(percent);
         format!("off by {rms} (rms over the sky), at worst {worst} (+- {error})")
     };
+    let begin = if followed { "polarised   followed; without it " } else { "unpolarised " };
     match left_out {
-        Ok(known @ LeftOut { luminance, radiance, nm }) => {
+        Ok(LeftOut { luminance, radiance, nm }) => {
             let luminance = luminance.map_or(String::new(), |off| format!("luminance {}\n            ", of(off)));
-            println!("unpolarised {luminance}radiance at {nm:.0} nm {}", of(*radiance));
-            if let Some(error) = asked.filter(|error| known.calls_for_polarisation(*error)) {
-                println!("            an error of {} is reached sooner with --polarisation", percent(error));
-            }
+            println!("{begin}{luminance}radiance at {nm:.0} nm {}", of(*radiance));
         }
+        Err(outside) if followed => println!("polarised   followed; what it is worth was not measured for {outside}"),
         Err(outside) => println!("unpolarised what that costs was not measured for {outside}"),
     }
 }

@@ -52,7 +52,7 @@ pub(super) fn plan(scene: &Scene, data: &Data, args: &RenderArgs, asked: f64) ->
 fn method(scene: &Scene) -> String {
     let rung = Rung::of(scene.method);
     let grid = scene.fineness.map_or(String::new(), |fineness| format!(", {} tables", fineness.name()));
-    let polarised = if scene.is_polarised() { ", with polarisation" } else { "" };
+    let polarised = if scene.polarised() == Some(true) { ", with polarisation" } else { "" };
     let steps = scene.steps.map_or(String::new(), |steps| format!(", {steps} points on a line"));
     let error = scene.error.map_or(String::new(), |error| format!(", until their own error is {:.3} %", 100.0 * error));
     format!("{}{grid}{steps}{polarised}{error}", rung.name)
@@ -67,8 +67,10 @@ fn flags(scene: &Scene) -> String {
     if let Some(steps) = scene.steps {
         flags += &format!(" --steps {steps}");
     }
-    if scene.follow_polarisation {
-        flags += " --follow-polarisation";
+    match scene.follow_polarisation {
+        Some(true) => flags += " --follow-polarisation",
+        Some(false) => flags += " --follow-polarisation=off",
+        None => {}
     }
     if let Some(error) = scene.error {
         flags += &format!(" --error {error}");
@@ -160,7 +162,7 @@ fn json(plan: &Plan, scene: &Scene) -> String {
         "rung": plan.candidate.map_or("paths".into(), Candidate::name),
         "method": Rung::of(planned.method).name,
         "fineness": planned.fineness,
-        "polarised": planned.is_polarised(),
+        "polarised": planned.polarised() == Some(true),
         "wavelengths_nm": planned.wavelengths(),
         "predicted": plan.error().map(|[likely, _]| likely),
         "predicted_at_most": plan.error().map(|[_, bound]| bound),

@@ -53,6 +53,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
         std::fs::create_dir_all(folder).map_err(|error| super::unwritable(folder, &error))?;
     }
     let sky = pool.install(|| sky(&scene, &data, folder))?;
+    // The picture says what was decided for it.
+    let scene = sky.decided(scene);
     if args.certify.is_some() && !sky.is_solved() {
         return Err(Failure::usage("--certify looks at solved tables: leave --method out"));
     }

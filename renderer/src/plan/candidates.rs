@@ -58,7 +58,7 @@ impl Transfer {
             method: if self.fineness.is_some() { Method::Solved } else { Method::Isotropic },
             fineness: self.fineness,
             steps: self.fineness.is_none().then_some(STEPS),
-            follow_polarisation: self.polarised && !stokes,
+            follow_polarisation: (self.fineness.is_some() && !stokes).then_some(self.polarised),
             sky_type: None,
             spp: None,
             error: None,

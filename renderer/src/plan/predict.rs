@@ -307,7 +307,8 @@ impl Plan {
                 if scene.wavelengths() != crate::spectrum::Wavelengths::default() {
                     made.wavelengths_nm.clone_from(&scene.wavelengths_nm);
                 }
-                made.follow_polarisation &= scene.phase == crate::atmosphere::HazePhase::Mie || scene.biome.is_none();
+                let known = scene.phase == crate::atmosphere::HazePhase::Mie || scene.biome.is_none();
+                made.follow_polarisation = made.follow_polarisation.map(|followed| followed && known);
                 made
             }
             (Some(one), _) => one.of(scene, share),
@@ -320,7 +321,7 @@ impl Plan {
                     steps: None,
                     spp: None,
                     error: Some(share),
-                    follow_polarisation: !stokes && known,
+                    follow_polarisation: (!stokes).then_some(known),
                     ..scene.clone()
                 }
             }

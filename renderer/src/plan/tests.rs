@@ -157,7 +157,7 @@ fn a_planned_picture_has_the_asked_error() {
         };
         (0..40).map(&mut of).collect()
     };
-    let exact = Scene { fineness: Some(Fineness::Fine), follow_polarisation: true, ..scene.clone() };
+    let exact = Scene { fineness: Some(Fineness::Fine), follow_polarisation: Some(true), ..scene.clone() };
     let right = luminances(&sky(&exact));
     let mean = right.iter().sum::<f64>() / 40.0;
     for asked in [0.05, 0.01] {

@@ -94,7 +94,7 @@ fn truth(scene: &Scene, metric: Metric, asked_at: &Wavelengths) -> Scene {
         error: None,
         polarisation: false,
         filter_deg: None,
-        follow_polarisation: scene.biome.is_none() || scene.phase == HazePhase::Mie,
+        follow_polarisation: Some(scene.biome.is_none() || scene.phase == HazePhase::Mie),
         width: Some(1),
         height: Some(1),
         ..scene.clone()

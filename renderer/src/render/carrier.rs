@@ -44,13 +44,15 @@ pub(super) struct Parts<'a> {
     pub(super) sun_direction: DVec3,
     pub(super) wanted: &'a Wanted,
     pub(super) scene: &'a Scene,
+    /// Whether light is followed with its polarisation.
+    pub(super) polarised: bool,
     pub(super) kept: Option<&'a Path>,
 }
 
 impl Parts<'_> {
     pub(super) fn carry<const L: usize>(&self, packet: &Packet) -> Result<Box<dyn Carrier>, RenderError> {
         let nm: [f64; L] = self.wavelengths.lanes(packet);
-        let (scene, polarised) = (self.scene, self.scene.is_polarised());
+        let (scene, polarised) = (self.scene, self.polarised);
         let shape = if scene.flat { Shape::Flat } else { Shape::Sphere { radius_m: EARTH_RADIUS_M } };
         let medium = self.air.medium(&nm)?;
         if polarised && !medium.polarises() {

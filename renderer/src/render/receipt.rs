@@ -95,8 +95,8 @@ pub fn receipt(
         ];
         attributes.extend(numbers.map(|(name, value)| (name, Attribute::Number(*value))));
     }
-    if !scene.is_polarised() {
-        match LeftOut::of(scene, sky) {
+    if !sky.is_polarised() {
+        match LeftOut::of(scene, sky.air(), sky.albedo()) {
             Ok(LeftOut { luminance, radiance, nm }) => {
                 if let Some(off) = luminance {
                     attributes.push(("airlight.unpolarised_luminance_rms", Attribute::Number(off.rms)));

@@ -129,9 +129,11 @@ pub struct Scene {
     /// ([`Camera::level`]), e2 upwards.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub polarisation: bool,
-    /// Whether light is followed with its polarisation though the picture keeps radiance alone, which it changes by up to some percent.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub follow_polarisation: bool,
+    /// Whether light is followed with its polarisation though the picture keeps radiance alone, which it changes by up to some percent. If
+    /// not given, it is by the methods that can, unless leaving it out is known to cost less than the error that is asked:
+    /// `table_error` of solved pictures, `error` of traced ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub follow_polarisation: Option<bool>,
     /// Axis of a polarising filter before the camera in degrees from e1 towards e2, -360 to 360: the picture is what passes.
     /// This and `polarisation` exclude each other.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -218,7 +220,7 @@ impl Default for Scene {
             height: None,
             exposure_ev: None,
             polarisation: false,
-            follow_polarisation: false,
+            follow_polarisation: None,
             filter_deg: None,
             method: Method::Solved,
             steps: None,
@@ -287,10 +289,16 @@ impl Scene {
         Some(format!("{key} is {} in one, {} in the other", value(&ours), value(&theirs)))
     }
 
-    /// Whether light is followed with its polarisation.
+    /// Whether light is followed with its polarisation, if the scene says so: what a picture keeps of it comes before what is followed.
     #[must_use]
-    pub fn is_polarised(&self) -> bool {
-        self.polarisation || self.follow_polarisation || self.filter_deg.is_some()
+    pub fn polarised(&self) -> Option<bool> {
+        if self.polarisation || self.filter_deg.is_some() { Some(true) } else { self.follow_polarisation }
+    }
+
+    /// The error that is asked: of a solved table, or of a traced picture, which is that of a table if none is given.
+    #[must_use]
+    pub fn asked_error(&self) -> f64 {
+        self.error.filter(|_| self.method != Method::Solved).unwrap_or(self.table_error)
     }
 
     /// The first setting that says something of an aerosol, by its flag without dashes.

@@ -68,7 +68,7 @@ const TERMS: [Term; 25] = [
     term("aerosol: humidity 50 % for 80", usual, |s| s.humidity_percent = Some(50.0)),
     term("aerosol: Henyey-Greenstein for Mie", usual, |s| s.phase = HazePhase::HenyeyGreenstein),
     term("depolarisation of air", usual, |s| s.depolarisation = Depolarisation::None),
-    term("polarisation", |s| s.follow_polarisation = true, usual),
+    term("polarisation", |s| s.follow_polarisation = Some(true), usual),
     term("a round planet", closure, |s| {
         closure(s);
         s.flat = true;
@@ -169,6 +169,7 @@ pub fn make(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Atlas, Rende
     for (a, (biome, aod, albedo)) in AIR.into_iter().enumerate() {
         let mut skies = Skies::new();
         let base = Scene {
+            follow_polarisation: Some(false),
             biome,
             aod,
             albedo: Albedo::Grey(albedo),

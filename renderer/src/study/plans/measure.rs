@@ -160,7 +160,7 @@ pub(super) fn measure(
         Turned::new(data, &Scene { wavelengths_nm: wavelengths.clone(), ..transfer.of(&scenes[0]) })
     };
     let table = |fineness, polarised| Transfer { fineness: Some(fineness), polarised };
-    let paths = Scene { method: Method::Paths, follow_polarisation: true, ..scenes[0].clone() };
+    let paths = Scene { method: Method::Paths, follow_polarisation: Some(true), ..scenes[0].clone() };
     let mut done = 0.0;
     let mut made = |transfer, wavelengths: &Wavelengths| {
         let made = at(transfer, wavelengths);
