@@ -7,6 +7,7 @@
 //! tables hold, each behind a feature of its name.
 
 pub mod aerosol;
+pub mod atlas;
 pub mod build;
 pub mod chart;
 pub mod coefficients;

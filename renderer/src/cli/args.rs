@@ -1,14 +1,16 @@
 //! Flags, and how they change a scene.
 
 use super::words::{
-    BiomeName, EstimatorName, MethodName, OzoneName, PhaseName, RenderMethod, Switch, TierName, biome, count, pixel,
-    share, time,
+    Asked, BiomeName, EstimatorName, MethodName, OzoneName, PhaseName, RenderMethod, Switch, TierName, asked, biome,
+    count, pixel, share, time,
 };
 use crate::atmosphere::Depolarisation;
+use crate::plan::Metric;
 use crate::render::Shard;
 use crate::scene::{Albedo, CameraKind, Moment, Scene, SceneError, SunShape, word};
 use crate::spectrum::{Scheme, Wavelengths};
 use crate::sweep::PATHS;
+use crate::transport::Fineness;
 use crate::vectors::Vectors;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -56,9 +58,18 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "N", help_heading = "Sampling")]
     pub spp: Option<u32>,
     /// Go on until sqrt(mean squared standard error) over mean radiance, the solar disc left
-    /// out, is at most this, 1e-5 to 1: 1% or 0.01; 16 blocks of each pixel at least
-    #[arg(long, value_name = "E", value_parser = share, help_heading = "Sampling")]
-    pub error: Option<f64>,
+    /// out, is at most this, 1e-5 to 1: 1% or 0.01; 16 blocks of each pixel at least. With --auto, and of a plan, the error
+    /// that the picture is to have at most
+    #[arg(long, value_name = "E", value_parser = asked, help_heading = "Sampling")]
+    pub error: Option<Asked>,
+    /// Plan: take the cheapest method, grid and wavelengths that meet --error by stored measurements (`airlight plan` says which and why),
+    /// look at random pixels by unbiased paths, and go on with a more exact one if they show that it does not
+    #[arg(long, requires = "error", conflicts_with_all = ["method", "steps", "orders", "spp", "time", "block", "shard", "resume", "checkpoint",
+        "certify", "table_error", "fineness", "follow_polarisation", "pixel"], help_heading = "Sampling")]
+    pub auto: bool,
+    /// What the error of --auto and of a plan is of; of colour --error 1 is a unit of CIEDE2000 [default: radiance]
+    #[arg(long, value_name = "METRIC", requires = "error", help_heading = "Sampling")]
+    pub metric: Option<Metric>,
     /// Go on for so long, 1s to 1000h, in whole passes over the picture, two blocks of each pixel at least: 30s, 5m or
     /// 1.5h. The picture tells how many samples that were, so that it can be repeated
     #[arg(long, value_name = "T", value_parser = time, help_heading = "Sampling")]
@@ -85,6 +96,10 @@ pub(super) struct RenderArgs {
     /// finer; with aerosol 0.2% takes some five times as long [default: 1%]
     #[arg(long, value_name = "E", value_parser = share, help_heading = "Sampling")]
     pub table_error: Option<f64>,
+    /// Grid on which tables are solved, whatever they would state; no other is solved that tells their error, which takes a third less time.
+    /// `airlight plan` chooses one by measured errors [default: as --table-error asks]
+    #[arg(long, value_name = "GRID", help_heading = "Sampling")]
+    pub fineness: Option<Fineness>,
     /// Wavelengths: how many from 380 to 780 nm, 1 to 1000, or a list in nm, 300 to 1000,
     /// increasing (450,550,650; a single one as 550.0) [default: 16]
     #[arg(long, value_name = "N|LIST", help_heading = "Sampling")]
@@ -125,6 +140,10 @@ pub(super) struct RenderArgs {
     /// [default: off; on without a word]
     #[arg(long, num_args = 0..=1, default_missing_value = "on", require_equals = true, help_heading = "Camera")]
     pub polarisation: Option<Switch>,
+    /// Follow light with its polarisation, but keep radiance alone in the picture [default: on, unless leaving it out is known to cost less
+    /// than --table-error, or --error of a traced picture; on without a word]
+    #[arg(long, num_args = 0..=1, default_missing_value = "on", require_equals = true, help_heading = "Camera")]
+    pub follow_polarisation: Option<Switch>,
     /// A polarising filter before the camera, its axis so many degrees from the horizontal of each pixel, anticlockwise as one
     /// looks, -360 to 360 [default: none]
     #[arg(long, value_name = "ANGLE", help_heading = "Camera")]
@@ -205,6 +224,16 @@ pub(super) struct PictureArgs {
     /// Say nothing but errors
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// Flags of `airlight plan`.
+#[derive(Debug, Args)]
+pub(super) struct PlanArgs {
+    #[command(flatten)]
+    pub render: RenderArgs,
+    /// Write the plan as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Flags of `airlight merge`.
@@ -396,15 +425,20 @@ pub(super) struct StudyArgs {
     /// What to study
     #[arg(value_name = "WHAT")]
     pub what: StudyName,
-    /// Of the ladder 18 scenes and the main settings alone, in some five minutes; of stability fewer cells, in one or two
+    /// Of the ladder 18 scenes and the main settings alone, in some five minutes; of stability fewer cells, in one or two; of plans and
+    /// held-out the first ten atmospheres
     #[arg(long)]
     pub quick: bool,
+    /// Go on with plans or held-out where the study was stopped: atmospheres that are in the file stay
+    #[arg(long)]
+    pub resume: bool,
     /// CSV to write, or PNG [default: plots/airlight-WHAT.csv, or .png]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Where `polarisation` stores its measurements, which the program is built with (CSV)
-    #[arg(long, value_name = "FILE", default_value = "renderer/measured/polarisation.csv")]
-    pub measured: PathBuf,
+    /// Where `polarisation`, `atlas`, `plans` and `held-out` store their measurements, which the program is built with
+    /// [default: renderer/measured/WHAT.csv]
+    #[arg(long, value_name = "FILE")]
+    pub measured: Option<PathBuf>,
     /// Folder with the tables
     #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
@@ -434,6 +468,14 @@ pub(super) enum StudyName {
     Strip,
     /// Where clear skies have no polarisation over the sun's elevation: the points of Arago, Babinet and Brewster
     NeutralPoints,
+    /// What plans are made from: errors and costs of every rung on 280 scenes (15 core-minutes; each atmosphere is stored when it is done)
+    Plans,
+    /// The same of 102 other scenes, by which plans are judged (10 core-minutes)
+    HeldOut,
+    /// How good plans are: those of the held-out scenes beside what is true, by what is stored
+    Planner,
+    /// What leaving out each part of the model changes, on thirty scenes (6 core-minutes)
+    Atlas,
     /// What leaving polarisation out costs over the sun's elevation, in clear air and the nine biomes: scalar beside polarised radiance
     Polarisation,
 }
@@ -448,6 +490,10 @@ impl StudyName {
             Self::SolvedGrids => "solved-grids",
             Self::Stability => "stability",
             Self::Strip => "strip",
+            Self::Plans => "plans",
+            Self::HeldOut => "held-out",
+            Self::Planner => "planner",
+            Self::Atlas => "atlas",
             Self::NeutralPoints => "neutral-points",
             Self::Polarisation => "polarisation",
         }
@@ -495,6 +541,8 @@ impl RenderArgs {
         // An amount on the command line replaces that of the scene, of whichever kind; so does no aerosol at all.
         let none = biome.is_none() && self.aerosol.biome.is_some();
         let amount = none || self.aerosol.aod.or(self.aerosol.visibility).or(self.aerosol.turbidity).is_some();
+        // The error of a plan is none of samples.
+        let planned = self.auto || self.metric.is_some();
         // So does an effort.
         let effort = self.spp.is_some() || self.error.is_some() || self.time.is_some();
         let timed = self.time.filter(|_| self.error.is_none()).map(|_| TIMED_BLOCK);
@@ -534,6 +582,10 @@ impl RenderArgs {
             polarisation: self
                 .polarisation
                 .map_or(base.polarisation && self.filter.is_none(), |switch| switch == Switch::On),
+            follow_polarisation: self
+                .follow_polarisation
+                .map(|switch| switch == Switch::On)
+                .or(base.follow_polarisation),
             filter_deg: self.filter.or(base.filter_deg.filter(|_| self.polarisation != Some(Switch::On))),
             colour: self.colour.unwrap_or(base.colour),
             method: self.method.map_or(base.method, Into::into),
@@ -546,8 +598,9 @@ impl RenderArgs {
             seed: self.seed.unwrap_or(base.seed),
             spp: self.spp.or(base.spp.filter(|_| !effort)),
             block: self.block.or(base.block).or(timed),
-            error: self.error.or(base.error.filter(|_| !effort)),
+            error: self.error.filter(|_| !planned).map(|error| error.share).or(base.error.filter(|_| !effort)),
             table_error: self.table_error.unwrap_or(base.table_error),
+            fineness: self.fineness.or(base.fineness.filter(|_| self.table_error.is_none())),
         };
         let scene = scene.settled()?;
         scene.validate()?;

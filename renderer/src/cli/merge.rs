@@ -53,7 +53,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<Outcome, Failure> {
     let stop = stop_on_interrupt();
     let (summary, disc) = pool.install(|| (Summary::new(&sky, scene.seed, &stop), disc_layer(&scene, &sky)));
     let rendering = Rendering { errors: film.errors(), film, end: End::Done };
-    Product { scene: &scene, sky: &sky, summary, disc, rendering, head, verdict: None }.deliver(
+    Product { scene: &scene, sky: &sky, summary, disc, rendering, head, verdict: None, achieved: None }.deliver(
         &files,
         &args.files,
         begin,

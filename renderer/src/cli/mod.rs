@@ -5,10 +5,12 @@
 //! be, 130 stopped by Ctrl-C (what was there is written first).
 
 mod args;
+mod auto;
 mod bench;
 mod merge;
 mod output;
 mod picture;
+mod plan;
 mod progress;
 mod radiance;
 mod render;
@@ -27,6 +29,9 @@ use std::process::ExitCode;
 enum Command {
     /// Render a picture: EXR to calculate with, PNG to look at
     Render(Box<args::RenderArgs>),
+    /// Say how a picture is made cheapest within an error, by stored measurements: method, wavelengths, what is left out and why that may be.
+    /// Takes the flags of render
+    Plan(Box<args::PlanArgs>),
     /// Write, check and show scene files
     #[command(subcommand)]
     Scene(args::SceneCommand),
@@ -75,6 +80,7 @@ impl From<SceneError> for Failure {
 pub fn main() -> ExitCode {
     let outcome = match Command::parse() {
         Command::Render(args) => render::run(&args),
+        Command::Plan(args) => plan::run(&args),
         Command::Scene(command) => scene::run(&command),
         Command::Merge(args) => merge::run(&args),
         Command::Radiance(args) => radiance::run(&args),

@@ -6,7 +6,7 @@ use super::output::println;
 use super::progress::{amount, duration, percent, size};
 use crate::film::{DiscLayer, Estimate, Picture, exr, png, tone};
 use crate::render::left_out::{LeftOut, Off};
-use crate::render::{Head, Part, Rendering, Residual, Shard, Sky, State, Summary, Verdict, receipt};
+use crate::render::{Achieved, Head, Part, Rendering, Residual, Shard, Sky, State, Summary, Verdict, receipt};
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
 use crate::transport::Method;
@@ -71,6 +71,8 @@ pub(super) struct Product<'a> {
     pub(super) head: Head,
     /// What a certificate says of the tables.
     pub(super) verdict: Option<Verdict>,
+    /// What a planned picture has achieved.
+    pub(super) achieved: Option<Achieved>,
 }
 
 impl Product<'_> {
@@ -82,10 +84,17 @@ impl Product<'_> {
         begin: Instant,
         pool: &rayon::ThreadPool,
     ) -> Result<(), Failure> {
-        let Self { scene, sky, summary, disc, rendering, head, verdict } = self;
+        let Self { scene, sky, summary, disc, rendering, head, verdict, achieved } = self;
         let picture = Picture { film: &rendering.film, disc, colour: sky.colour() };
         let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(&picture));
-        let attributes = receipt::receipt(scene, sky, &head.parts, rendering, summary, exposure_ev, verdict.as_ref());
+        let attributes = receipt::receipt(
+            scene,
+            sky,
+            &head.parts,
+            rendering,
+            (summary, exposure_ev),
+            (verdict.as_ref(), achieved.as_ref()),
+        );
         let spectral = (args.spectral || scene.polarisation).then(|| scene.wavelengths());
         let exr = exr::encode(&picture, spectral.as_ref().map(Wavelengths::nm), &attributes).map_err(Failure::error)?;
         let png = png::encode(&picture, exposure_ev).map_err(Failure::error)?;
@@ -104,11 +113,14 @@ impl Product<'_> {
         }
         if !args.quiet {
             describe(scene, sky, summary, rendering, &head.parts);
-            if !scene.is_polarised() {
-                describe_left_out(&LeftOut::of(scene, sky), scene.error.filter(|_| !sky.is_solved()));
+            if !scene.polarisation && scene.filter_deg.is_none() {
+                describe_left_out(&LeftOut::of(scene, sky.air(), sky.albedo()), sky.is_polarised());
             }
             if let Some(verdict) = verdict {
                 describe_verdict(verdict, sky.sun_direction(), scene.filter_deg.is_some());
+            }
+            if let Some(achieved) = achieved {
+                println!("achieved    {}", super::auto::words(achieved));
             }
             println!(
                 "time        {} on {} threads",
@@ -259,21 +271,19 @@ fn describe(scene: &Scene, sky: &Sky, summary: &Summary, rendering: &Rendering, 
     );
 }
 
-/// What it costs that the picture has no polarisation, or in what the scene lies outside the measurements; of a traced picture
-/// also whether the error that was asked calls for it.
-fn describe_left_out(left_out: &Result<LeftOut, String>, asked: Option<f64>) {
+/// What it costs, or would cost where polarisation is followed, to leave it out, or in what the scene lies outside the measurements.
+fn describe_left_out(left_out: &Result<LeftOut, String>, followed: bool) {
     let of = |Off { rms, worst, error }: Off| {
         let [rms, worst, error] = [rms, worst, error].map(percent);
         format!("off by {rms} (rms over the sky), at worst {worst} (+- {error})")
     };
+    let begin = if followed { "polarised   followed; without it " } else { "unpolarised " };
     match left_out {
-        Ok(known @ LeftOut { luminance, radiance, nm }) => {
+        Ok(LeftOut { luminance, radiance, nm }) => {
             let luminance = luminance.map_or(String::new(), |off| format!("luminance {}\n            ", of(off)));
-            println!("unpolarised {luminance}radiance at {nm:.0} nm {}", of(*radiance));
-            if let Some(error) = asked.filter(|error| known.calls_for_polarisation(*error)) {
-                println!("            an error of {} is reached sooner with --polarisation", percent(error));
-            }
+            println!("{begin}{luminance}radiance at {nm:.0} nm {}", of(*radiance));
         }
+        Err(outside) if followed => println!("polarised   followed; what it is worth was not measured for {outside}"),
         Err(outside) => println!("unpolarised what that costs was not measured for {outside}"),
     }
 }

@@ -28,11 +28,14 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
             let state = read_state(path, &args.tables)?;
             (resumed(args, &state, path)?, Some(state))
         }
-        None => {
-            let base = args.scene.as_deref().map(|path| read_scene(path, &args.tables)).transpose()?;
-            (args.scene(base.unwrap_or_default())?, None)
-        }
+        None => (scene(args)?, None),
     };
+    if args.auto {
+        return super::auto::run(args, &scene, begin);
+    }
+    if args.metric.is_some() {
+        return Err(Failure::usage("--metric says what an error of --auto is of: add --auto"));
+    }
     if args.files.spectral && scene.method.is_dome() {
         return Err(Failure::usage("a fitted sky has no spectrum: leave out --spectral"));
     }
@@ -50,6 +53,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
         std::fs::create_dir_all(folder).map_err(|error| super::unwritable(folder, &error))?;
     }
     let sky = pool.install(|| sky(&scene, &data, folder))?;
+    // The picture says what was decided for it.
+    let scene = sky.decided(scene);
     if args.certify.is_some() && !sky.is_solved() {
         return Err(Failure::usage("--certify looks at solved tables: leave --method out"));
     }
@@ -101,7 +106,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     let end = rendering.end;
     let scene = as_made(scene, rendering.film.most_blocks(), extent, end);
     let head = Head { scene: scene.portable(), ..head };
-    Product { scene: &scene, sky: &sky, summary, disc, rendering, head, verdict }.deliver(
+    Product { scene: &scene, sky: &sky, summary, disc, rendering, head, verdict, achieved: None }.deliver(
         &files,
         &args.files,
         begin,
@@ -113,6 +118,12 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
         return Ok(Outcome::Interrupted);
     }
     Ok(Outcome::Done)
+}
+
+/// The scene of the flags, laid over that of the file.
+pub(super) fn scene(args: &RenderArgs) -> Result<Scene, Failure> {
+    let base = args.scene.as_deref().map(|path| read_scene(path, &args.tables)).transpose()?;
+    Ok(args.scene(base.unwrap_or_default())?)
 }
 
 /// The scene turned into something that answers.

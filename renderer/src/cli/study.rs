@@ -1,14 +1,16 @@
 //! `airlight study`.
 
 use super::args::{StudyArgs, StudyName};
-use super::output::println;
+use super::output::{eprintln, println};
 use super::progress::{Line, duration};
 use super::{Failure, Outcome};
 use crate::data::Data;
 use crate::film::png;
+use crate::plan::{Evidence, Measured};
 use crate::render::RenderError;
 use crate::study::ladder::Size;
-use crate::study::{self, Chart};
+use crate::study::{self, Chart, plans};
+use std::path::{Path, PathBuf};
 
 /// Makes a chart from the data; hears of progress.
 type MakeChart = fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError>;
@@ -17,10 +19,21 @@ type MakeChart = fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError>;
 type Make = Box<dyn Fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Made, RenderError> + Sync>;
 
 pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
-    if args.quick && !matches!(args.what, StudyName::Ladder | StudyName::Stability) {
-        return Err(Failure::usage("--quick belongs to the ladder and to stability: leave it out"));
+    let has_quick =
+        matches!(args.what, StudyName::Ladder | StudyName::Stability | StudyName::Plans | StudyName::HeldOut);
+    if args.quick && !has_quick {
+        return Err(Failure::usage("--quick belongs to ladder, stability, plans and held-out: leave it out"));
+    }
+    if args.resume && !matches!(args.what, StudyName::Plans | StudyName::HeldOut) {
+        return Err(Failure::usage("--resume belongs to plans and held-out: leave it out"));
     }
     let pool = super::pool(args.threads)?;
+    let measured = measured(args);
+    match args.what {
+        StudyName::Plans => return measure_plans(args, plans::Set::Measured, &measured, pool.current_num_threads()),
+        StudyName::HeldOut => return measure_plans(args, plans::Set::HeldOut, &measured, pool.current_num_threads()),
+        _ => {}
+    }
     let (size, threads) = (if args.quick { Size::Quick } else { Size::Full }, pool.current_num_threads());
     let chart = |make: MakeChart| -> Make { Box::new(move |data, progress| make(data, progress).map(Made::from)) };
     let make: Make = match args.what {
@@ -41,6 +54,17 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
             let maps = study::stability::make(data, size, progress)?;
             Ok(Made { bytes: maps.csv().into_bytes(), rows: maps.summary(), measured: None })
         }),
+        StudyName::Planner => Box::new(|_, _| {
+            let (rows, chart) = judged().map_err(RenderError::Measured)?;
+            Ok(Made { rows, ..Made::from(chart) })
+        }),
+        StudyName::Atlas => Box::new(|data, progress| {
+            let atlas = study::atlas::make(data, progress)?;
+            let bytes = atlas.csv().into_bytes();
+            Ok(Made { rows: study::atlas::summary(&atlas), measured: Some(bytes.clone()), bytes })
+        }),
+        // Measured above.
+        StudyName::Plans | StudyName::HeldOut => return Ok(Outcome::Done),
         StudyName::Strip => Box::new(|data, progress| {
             let strip = study::strip::make(data, progress)?;
             Ok(Made { bytes: png::file(strip.size, &strip.pixels)?, rows: of_strip(&strip), measured: None })
@@ -49,8 +73,8 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
     let ending = if matches!(args.what, StudyName::Strip) { "png" } else { "csv" };
     let path = args.output.clone().unwrap_or_else(|| format!("plots/airlight-{}.{ending}", args.what.as_str()).into());
     tables::file::check_writable(&path).map_err(|e| super::unwritable(&path, &e))?;
-    if matches!(args.what, StudyName::Polarisation) {
-        tables::file::check_writable(&args.measured).map_err(|e| super::unwritable(&args.measured, &e))?;
+    if matches!(args.what, StudyName::Polarisation | StudyName::Atlas) {
+        tables::file::check_writable(&measured).map_err(|e| super::unwritable(&measured, &e))?;
     }
     let data = Data::load(&args.data).map_err(Failure::error)?;
     let line = Line::new(args.quiet);
@@ -58,16 +82,59 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
     let made = pool.install(|| make(&data, &progress)).map_err(Failure::error)?;
     line.clear();
     tables::file::replace(&path, &made.bytes).map_err(|e| super::unwritable(&path, &e))?;
-    if let Some(measured) = &made.measured {
-        tables::file::replace(&args.measured, measured).map_err(|e| super::unwritable(&args.measured, &e))?;
+    if let Some(bytes) = &made.measured {
+        tables::file::replace(&measured, bytes).map_err(|e| super::unwritable(&measured, &e))?;
     }
     if !args.quiet {
         println!("{}", made.rows.join("\n"));
         println!("time        {} on {threads} threads", duration(line.elapsed().as_secs_f64()));
         println!("written     {}", path.display());
         if made.measured.is_some() {
-            println!("            {} (build again to carry it)", args.measured.display());
+            println!("            {} (build again to carry it)", measured.display());
         }
+    }
+    Ok(Outcome::Done)
+}
+
+/// Where measurements go.
+fn measured(args: &StudyArgs) -> PathBuf {
+    args.measured.clone().unwrap_or_else(|| format!("renderer/measured/{}.csv", args.what.as_str()).into())
+}
+
+/// Plans judged by the scenes kept apart, both as stored.
+fn judged() -> Result<(Vec<String>, Chart), String> {
+    let held_out = Measured::held_out()?;
+    if held_out.rows.is_empty() {
+        return Err("no scenes are kept apart: run airlight study held-out, and build again".into());
+    }
+    Ok(plans::judge(&Evidence::new(&Measured::stored()?)?, &held_out))
+}
+
+/// Measures what plans are made from or judged by, and stores it after each atmosphere.
+fn measure_plans(args: &StudyArgs, set: plans::Set, path: &Path, threads: usize) -> Result<Outcome, Failure> {
+    const QUICK: usize = 10;
+    tables::file::check_writable(path).map_err(|e| super::unwritable(path, &e))?;
+    let data = Data::load(&args.data).map_err(Failure::error)?;
+    let line = Line::new(args.quiet);
+    let atmospheres = if args.quick { QUICK } else { set.size().0 };
+    let progress = |share: f64| line.show(share, |_| args.what.as_str().to_owned());
+    let keep = |measured: &Measured| {
+        // What is measured in the end counts.
+        if let Err(error) = tables::file::replace(path, measured.csv().as_bytes()) {
+            eprintln!("airlight: {}: cannot be written, the study goes on: {error}", path.display());
+        }
+    };
+    // A study that was stopped goes on.
+    let known = std::fs::read_to_string(path).ok().filter(|_| args.resume).map(|csv| Measured::parse(&csv));
+    let known = known.transpose().map_err(|error| Failure::error(format!("{}: {error}", path.display())))?;
+    let known = known.unwrap_or_default();
+    let found = plans::measure(&data, (set, atmospheres, known), threads, &progress, &keep).map_err(Failure::error)?;
+    line.clear();
+    tables::file::replace(path, found.csv().as_bytes()).map_err(|e| super::unwritable(path, &e))?;
+    if !args.quiet {
+        println!("{} scenes of {atmospheres} atmospheres", found.rows.len());
+        println!("time        {} on {threads} threads", duration(line.elapsed().as_secs_f64()));
+        println!("written     {} (build again to carry it)", path.display());
     }
     Ok(Outcome::Done)
 }

@@ -2,6 +2,7 @@
 
 use crate::atmosphere::{HazePhase, OzoneSource};
 use crate::cases::Tier;
+use crate::plan::Metric;
 use crate::scene::word;
 use crate::transport::{Estimator, Method};
 use clap::ValueEnum;
@@ -150,6 +151,30 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
     // Rounded as written, so that 7% is 0.07.
     let value = format!("{value:.12}").parse().unwrap_or(value);
     if (1e-5..=1.0).contains(&value) { Ok(value) } else { Err("0.001% to 100% is possible".into()) }
+}
+
+/// An error that is asked for: as a share, and in units of CIEDE2000, of which `1` and `1%` are one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Asked {
+    pub(super) share: f64,
+    units: f64,
+}
+
+impl Asked {
+    /// In the unit of a metric.
+    pub(super) fn of(self, metric: Metric) -> f64 {
+        if metric == Metric::Colour { self.units } else { self.share }
+    }
+}
+
+/// As [`share`], or units of colour up to 100.
+pub(super) fn asked(text: &str) -> Result<Asked, String> {
+    let number = text.parse::<f64>().ok().filter(|units| (1.0..=100.0).contains(units));
+    if let Some(units) = number {
+        return Ok(Asked { share: units, units });
+    }
+    let share = share(text)?;
+    Ok(Asked { share, units: if text.ends_with('%') { 100.0 * share } else { share } })
 }
 
 /// A whole number: `1000000` or `1e6`.

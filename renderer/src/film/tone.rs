@@ -1,7 +1,7 @@
 //! From luminance to the display: exposure and tone curve.
 
 use super::Picture;
-use crate::spectrum::luminance;
+use crate::spectrum::{lab, linear_srgb, luminance, xyz};
 
 /// Luminance in cd/m^2 that just saturates a picture exposed for EV 0 at ISO 100:
 /// 78 / (100 * 0.65) (ISO 12232, saturation-based speed; lens transmission 0.65).
@@ -42,6 +42,19 @@ pub fn automatic_ev(picture: &Picture<'_>) -> f64 {
     bright.sort_unstable_by(f64::total_cmp);
     let mean = bright.iter().map(|y| y.log2()).sum::<f64>() / bright.len() as f64;
     mean - (KEY * SATURATION_CD_M2).log2()
+}
+
+/// The luminance in cd/m^2 that becomes display white where the logarithmic mean of these luminances, of those above 0, becomes 22 % of it.
+#[must_use]
+pub fn automatic_white(luminances: &[f64]) -> f64 {
+    let lit = || luminances.iter().filter(|y| **y > 0.0);
+    (lit().map(|y| y.ln()).sum::<f64>() / lit().count() as f64).exp() / KEY
+}
+
+/// CIELAB of a colour in XYZ (cd/m^2) as the display shows it, for a white in cd/m^2.
+#[must_use]
+pub fn displayed(colour: [f64; 3], white_cd_m2: f64) -> [f64; 3] {
+    lab(xyz(display(linear_srgb(colour), white_cd_m2)), xyz([1.0; 3]))
 }
 
 /// Linear display RGB in 0..=1 of a linear sRGB colour in cd/m^2, for a white in cd/m^2.

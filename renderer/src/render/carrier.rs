@@ -12,7 +12,7 @@ use crate::sampling::Sampler;
 use crate::scene::{Scene, SceneError, SunShape};
 use crate::spectrum::{Packet, Wavelengths};
 use crate::transport::rungs::{Cheap, Stated};
-use crate::transport::{self, Certificate, Estimator, Method, Panorama, Problem, SolveError, Tables};
+use crate::transport::{self, Certificate, Estimator, Method, Panorama, Problem, SolveError, Solved, Tables};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::path::Path;
@@ -44,13 +44,15 @@ pub(super) struct Parts<'a> {
     pub(super) sun_direction: DVec3,
     pub(super) wanted: &'a Wanted,
     pub(super) scene: &'a Scene,
+    /// Whether light is followed with its polarisation.
+    pub(super) polarised: bool,
     pub(super) kept: Option<&'a Path>,
 }
 
 impl Parts<'_> {
     pub(super) fn carry<const L: usize>(&self, packet: &Packet) -> Result<Box<dyn Carrier>, RenderError> {
         let nm: [f64; L] = self.wavelengths.lanes(packet);
-        let (scene, polarised) = (self.scene, self.scene.is_polarised());
+        let (scene, polarised) = (self.scene, self.polarised);
         let shape = if scene.flat { Shape::Flat } else { Shape::Sphere { radius_m: EARTH_RADIUS_M } };
         let medium = self.air.medium(&nm)?;
         if polarised && !medium.polarises() {
@@ -76,9 +78,13 @@ impl Parts<'_> {
             (None, Method::Solved) => {
                 let view = (self.place, self.sun_direction, self.wanted.judged.as_slice());
                 let sky = (&medium, shape, albedo, polarised);
-                let tables = Tables::within(scene.table_error, view, sky, self.kept)?;
-                let (error, seen) = seen(&tables, self.place, &sun, self.wanted)?;
-                Means::Solved { tables, error, seen }
+                let grids = match scene.fineness {
+                    None => Grids::Judged(Tables::within(scene.table_error, view, sky, self.kept)?),
+                    Some(fineness) => Grids::Alone(Solved::of(sky, &fineness.resolution(), self.kept)?),
+                };
+                let asked = scene.table_error;
+                let (error, seen) = seen(&grids, asked, (self.place, &sun), self.wanted)?;
+                Means::Solved { grids, asked, error, seen }
             }
             (None, method) => Means::Cheap(Cheap::new(method, &medium, shape, albedo, scene.steps)),
         };
@@ -87,21 +93,44 @@ impl Parts<'_> {
     }
 }
 
-/// The error of tables for an observer and a sun, and what is seen with each of the suns that stand for the disc.
+/// Solved tables.
+#[derive(Debug)]
+enum Grids<const L: usize> {
+    /// With a coarser one that tells their error.
+    Judged(Tables<L>),
+    /// On a grid that was chosen, which states none.
+    Alone(Solved<L>),
+}
+
+impl<const L: usize> Grids<L> {
+    fn solved(&self) -> &Solved<L> {
+        match self {
+            Self::Judged(tables) => &tables.solved,
+            Self::Alone(solved) => solved,
+        }
+    }
+}
+
+/// The error that tables state for an observer and a sun, and what is seen with each of the suns that stand for the disc, as exactly as
+/// befits that error, or the `asked` one of tables that state none.
 fn seen<const L: usize>(
-    tables: &Tables<L>,
-    place: Place,
-    sun: &SunDisc<L>,
+    grids: &Grids<L>,
+    asked: f64,
+    (place, sun): (Place, &SunDisc<L>),
     wanted: &Wanted,
-) -> Result<(f64, Vec<Panorama<L>>), SolveError> {
-    let error = tables.error(place, sun.direction(), &wanted.judged);
-    if error.is_nan() || error > MOST_ERROR {
+) -> Result<(Option<f64>, Vec<Panorama<L>>), SolveError> {
+    let error = match grids {
+        Grids::Judged(tables) => Some(tables.error(place, sun.direction(), &wanted.judged)),
+        Grids::Alone(_) => None,
+    };
+    if let Some(error) = error.filter(|error| error.is_nan() || *error > MOST_ERROR) {
         return Err(SolveError::Inexact(error));
     }
     let (least, most) = SHOWN;
-    let shown = (SHARE * error).clamp(least, most);
-    let suns = tables.solved.suns(place, sun).into_iter();
-    Ok((error, suns.map(|sun| Panorama::new(&tables.solved, place, sun, shown, &wanted.shown)).collect()))
+    let shown = (SHARE * error.unwrap_or(asked)).clamp(least, most);
+    let solved = grids.solved();
+    let suns = solved.suns(place, sun).into_iter();
+    Ok((error, suns.map(|sun| Panorama::new(solved, place, sun, shown, &wanted.shown)).collect()))
 }
 
 /// A packet of wavelengths, whatever the number of its lanes; slices are as long as
@@ -120,6 +149,7 @@ pub(super) trait Carrier: Debug + Send + Sync {
     fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool;
     fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]);
     fn table_error(&self) -> Option<f64>;
+    fn is_solved(&self) -> bool;
     /// What a cheap method states of its own error.
     fn stated(&self, from: Place) -> Option<Stated>;
     fn is_noiseless(&self) -> bool;
@@ -134,10 +164,12 @@ pub(super) trait Carrier: Debug + Send + Sync {
 #[derive(Debug)]
 enum Means<const L: usize> {
     Estimated(Estimator, Columns<L>),
-    /// With the error for this observer and this sun, and what is seen with each of the suns that stand for the disc.
+    /// With the error that was asked, the one stated for this observer and this sun, and what is seen with each of the suns that stand for
+    /// the disc.
     Solved {
-        tables: Tables<L>,
-        error: f64,
+        grids: Grids<L>,
+        asked: f64,
+        error: Option<f64>,
         seen: Vec<Panorama<L>>,
     },
     /// None behind a fitted sky, where only the sun is asked for.
@@ -181,10 +213,10 @@ impl<const L: usize> Carrier for Lanes<L> {
     fn radiance(&self, from: Place, direction: DVec3, sampler: &mut Sampler, factors: &mut [f64]) {
         let (estimator, columns) = match &self.means {
             Means::Estimated(estimator, columns) => (*estimator, columns),
-            Means::Solved { tables, seen, .. } => {
+            Means::Solved { grids, seen, .. } => {
                 factors.fill(0.0);
                 for sun in seen {
-                    let radiance = sun.radiance(&tables.solved, direction);
+                    let radiance = sun.radiance(grids.solved(), direction);
                     for (factor, radiance) in factors.iter_mut().zip(radiance) {
                         *factor += radiance / seen.len() as f64;
                     }
@@ -218,10 +250,10 @@ impl<const L: usize> Carrier for Lanes<L> {
             Means::Estimated(estimator, columns) => {
                 transport::stokes(*estimator, &self.problem(columns), from, direction, frame, sampler)
             }
-            Means::Solved { tables, seen, .. } => {
+            Means::Solved { grids, seen, .. } => {
                 let mut sum = [Stokes::default(); L];
                 for sun in seen {
-                    for (sum, one) in sum.iter_mut().zip(sun.stokes(&tables.solved, direction, frame)) {
+                    for (sum, one) in sum.iter_mut().zip(sun.stokes(grids.solved(), direction, frame)) {
                         *sum += one * (seen.len() as f64).recip();
                     }
                 }
@@ -237,9 +269,13 @@ impl<const L: usize> Carrier for Lanes<L> {
 
     fn table_error(&self) -> Option<f64> {
         match &self.means {
-            Means::Solved { error, .. } => Some(*error),
+            Means::Solved { error, .. } => *error,
             Means::Estimated(..) | Means::Cheap(_) => None,
         }
+    }
+
+    fn is_solved(&self) -> bool {
+        matches!(self.means, Means::Solved { .. })
     }
 
     fn stated(&self, from: Place) -> Option<Stated> {
@@ -254,13 +290,14 @@ impl<const L: usize> Carrier for Lanes<L> {
     fn bytes(&self) -> usize {
         match &self.means {
             Means::Estimated(_, columns) => columns.bytes(),
-            Means::Solved { tables, .. } => tables.solved.bytes(),
+            Means::Solved { grids, .. } => grids.solved().bytes(),
             Means::Cheap(cheap) => cheap.as_ref().map_or(0, Cheap::bytes),
         }
     }
 
     fn certificate(&self, from: Place, shows: Shows, count: usize) -> Option<Box<dyn Certifies + '_>> {
-        let Means::Solved { tables: Tables { solved, .. }, .. } = &self.means else { return None };
+        let Means::Solved { grids, .. } = &self.means else { return None };
+        let solved = grids.solved();
         let columns = Columns::new(&self.medium, self.shape, Tolerance::RENDER);
         let certificate = Certificate::new(solved, columns, from, self.sun.direction());
         Some(Box::new(certify::Packet { solved, certificate, shows, count }))
@@ -268,8 +305,8 @@ impl<const L: usize> Carrier for Lanes<L> {
 
     fn turn(&mut self, from: Place, sun: DVec3, wanted: &Wanted) -> Result<(), SolveError> {
         self.sun.turn(sun);
-        if let Means::Solved { tables, error, seen: panoramas } = &mut self.means {
-            (*error, *panoramas) = seen(tables, from, &self.sun, wanted)?;
+        if let Means::Solved { grids, asked, error, seen: panoramas } = &mut self.means {
+            (*error, *panoramas) = seen(grids, *asked, (from, &self.sun), wanted)?;
         }
         Ok(())
     }

@@ -124,6 +124,7 @@ impl<const L: usize> Certifies for Packet<'_, L> {
     fn certified(&self, direction: DVec3, fans: u32, seed: u64, stream: u64) -> Vec<Vec<(f64, f64)>> {
         let look = (direction, Frame::level(self.certificate.observer().0.up, direction));
         let found = match self.shows {
+            Shows::Radiance if self.solved.is_polarised() => self.stokes(look, |seen| [seen.i], fans, (seed, stream)),
             Shows::Radiance => vec![self.certificate.radiance(direction, Fan::USUAL, fans, seed, stream)],
             Shows::Stokes => self.stokes(look, parameters, fans, (seed, stream)),
             Shows::Filtered(angle) => self.stokes(look, passed(angle), fans, (seed, stream)),

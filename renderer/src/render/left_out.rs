@@ -3,8 +3,7 @@
 //! Where a scene lies between the measured suns, albedos of the ground, amounts of aerosol and wavelengths, values are linear
 //! between them; where it lies outside, nothing is said but why.
 
-use super::Sky;
-use crate::atmosphere::{Depolarisation, HazePhase};
+use crate::atmosphere::{Air, Depolarisation, Haze, HazePhase};
 use crate::scene::Scene;
 use crate::transport::Method;
 use std::fmt::Write;
@@ -188,12 +187,12 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// Of an unpolarised scene, by the stored measurements.
+    /// Of a scene with that air, over a ground that reflects so much at each of its wavelengths, by the stored measurements.
     ///
     /// # Errors
     /// In what the scene lies outside what was measured, a phrase.
-    pub fn of(scene: &Scene, sky: &Sky) -> Result<Self, String> {
-        let amount = sky.air().haze().map_or(0.0, |haze| haze.factor());
+    pub fn of(scene: &Scene, air: &Air, albedos: &[f64]) -> Result<Self, String> {
+        let amount = air.haze().map_or(0.0, Haze::factor);
         let nm = scene.wavelengths_nm.nm();
         inside(scene, amount)?;
         let measured = Measured::stored()?;
@@ -202,7 +201,7 @@ impl LeftOut {
             |albedo: f64, quantity: usize| measured.at((aerosol, amount), scene.sun_elevation_deg, albedo, quantity);
         let mut worst = (Off::default(), nm[0]);
         let mut mean = 0.0;
-        for (&nm, &albedo) in nm.iter().zip(sky.albedo()) {
+        for (&nm, &albedo) in nm.iter().zip(albedos) {
             let (i, share) = between(&WAVELENGTHS, nm);
             let off = at(albedo, 1 + i).towards(at(albedo, 2 + i), share);
             if off.rms <= 0.0 {
@@ -211,22 +210,37 @@ impl LeftOut {
             if off.rms > worst.0.rms {
                 worst = (off, nm);
             }
-            mean += albedo / sky.albedo().len() as f64;
+            mean += albedo / albedos.len() as f64;
         }
         let luminance = (nm.len() >= COLOURS).then(|| at(mean, 0));
         Ok(Self { luminance, radiance: worst.0, nm: worst.1 })
     }
 
-    /// Whether a traced picture whose standard error is to be `error` is made sooner with polarisation than without.
+    /// Whether a picture that is to be off by no more than `error` needs polarisation.
     ///
     /// Polarised transfer takes c times as long for equal noise. Without it the noise must leave room for what is left out, b (rms):
     /// the whole is `error` E with the noise sqrt(E^2 - b^2), which takes E^2 / (E^2 - b^2) times as long. That is more than c where
-    /// b > E sqrt(1 - 1 / c): 0.6 E for the c of 16 wavelengths, 1.3 to 1.9 (`airlight bench polarised`).
+    /// b > E sqrt(1 - 1 / c): 0.6 E for the c of 16 wavelengths, 1.3 to 1.9 (`airlight bench polarised`). Solved pictures, whose
+    /// tables take 1.7 times as long, leave the same room.
     #[must_use]
     pub fn calls_for_polarisation(&self, error: f64) -> bool {
         const COST: f64 = 1.6;
         self.luminance.unwrap_or(self.radiance).rms > error * (1.0 - 1.0 / COST).sqrt()
     }
+}
+
+/// Whether the method of a scene follows polarisation: that of all orders does.
+pub(super) fn can_follow(scene: &Scene) -> bool {
+    scene.method == Method::Solved || scene.method.estimator().is_some()
+}
+
+/// Whether light is followed with its polarisation in a scene that does not say: by methods of all orders, unless leaving it out is known
+/// to cost less than the error that is asked.
+pub(super) fn is_followed(scene: &Scene, air: &Air, albedo: &[f64]) -> bool {
+    let known = air.haze().is_none() || scene.phase == HazePhase::Mie;
+    can_follow(scene)
+        && known
+        && LeftOut::of(scene, air, albedo).map_or(true, |left_out| left_out.calls_for_polarisation(scene.asked_error()))
 }
 
 /// Refuses what was not measured.

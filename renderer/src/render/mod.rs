@@ -4,6 +4,7 @@
 //! sample s as point s mod m of block s / m, and blocks are added in order: so a picture depends neither on the number
 //! of threads nor on where its work was interrupted.
 
+mod achieved;
 mod carrier;
 mod certify;
 mod disc;
@@ -21,6 +22,8 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use achieved::PACKETS;
+pub use achieved::{Achieved, achieved};
 pub(crate) use carrier::MOST_ERROR as MOST_TABLE_ERROR;
 pub use certify::{Residual, Verdict, certify, certify_table};
 pub use disc::disc_layer;
@@ -65,6 +68,9 @@ pub enum RenderError {
     /// There is no solved table for the scene.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// Stored measurements are none.
+    #[error("stored measurements: {0}")]
+    Measured(String),
     /// A picture cannot be encoded.
     #[error(transparent)]
     Encode(#[from] EncodeError),

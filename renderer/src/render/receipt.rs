@@ -1,7 +1,7 @@
 //! What a picture says about how it was made.
 
 use super::left_out::LeftOut;
-use super::{End, Part, Rendering, Sky, Summary, Verdict};
+use super::{Achieved, End, Part, Rendering, Sky, Summary, Verdict};
 use crate::film::exr::Attribute;
 use crate::scene::Scene;
 
@@ -35,7 +35,8 @@ pub fn tables(sky: &Sky) -> String {
 /// The attributes of a picture's EXR file, names beginning with `airlight.`: program and version, the scene as JSON
 /// (`airlight render` reads it), the seeds and shards whose samples it has, one a line, samples, errors, ozone, illuminances, exposure of the PNG, and
 /// each table with its checksum; with a certificate, the rms error of solved tables and what it is below with 95 % confidence, of Q and U too if the
-/// picture has them; without
+/// picture has them; of a planned picture what was asked of which metric, the rms error in random pixels, and what it is above and below, each with
+/// 95 % confidence; without
 /// polarisation, how far that puts luminance and radiance off ([`LeftOut`]), or why it is not known. No clock, machine or folder.
 #[must_use]
 pub fn receipt(
@@ -43,9 +44,8 @@ pub fn receipt(
     sky: &Sky,
     parts: &[Part],
     rendering: &Rendering,
-    summary: &Summary,
-    exposure_ev: f64,
-    verdict: Option<&Verdict>,
+    (summary, exposure_ev): (&Summary, f64),
+    (verdict, achieved): (Option<&Verdict>, Option<&Achieved>),
 ) -> Vec<(String, Attribute)> {
     let film = &rendering.film;
     let text = |value: String| Attribute::Text(value);
@@ -85,8 +85,18 @@ pub fn receipt(
             attributes.push((most, Attribute::Number(error.most)));
         }
     }
-    if !scene.is_polarised() {
-        match LeftOut::of(scene, sky) {
+    if let Some(Achieved { metric, asked, found, between: [least, most], .. }) = achieved {
+        attributes.push(("airlight.achieved_metric", text(metric.name().into())));
+        let numbers = [
+            ("airlight.achieved_asked", asked),
+            ("airlight.achieved_rms", found),
+            ("airlight.achieved_rms_least", least),
+            ("airlight.achieved_rms_most", most),
+        ];
+        attributes.extend(numbers.map(|(name, value)| (name, Attribute::Number(*value))));
+    }
+    if !sky.is_polarised() {
+        match LeftOut::of(scene, sky.air(), sky.albedo()) {
             Ok(LeftOut { luminance, radiance, nm }) => {
                 if let Some(off) = luminance {
                     attributes.push(("airlight.unpolarised_luminance_rms", Attribute::Number(off.rms)));

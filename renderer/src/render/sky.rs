@@ -3,7 +3,7 @@
 use super::RenderError;
 use super::carrier::{Carrier, Parts, Wanted};
 use super::certify::{Certifies, spread};
-use super::domes;
+use super::{domes, left_out};
 use crate::atmosphere::{Air, AirSettings, Haze, OzoneSource};
 use crate::data::{Data, Identity};
 use crate::geometry::{Place, Shape};
@@ -34,6 +34,7 @@ pub struct Sky {
     sun_direction: DVec3,
     identities: Vec<Identity>,
     shows: Shows,
+    polarised: bool,
     fitted: Option<Fitted>,
     turbidity: f64,
 }
@@ -114,10 +115,22 @@ impl Sky {
         let air = air.with_haze(haze);
         let sun_direction = scene.sun_direction();
         let place = Place::above(scene.altitude_km * KM);
+        let polarised = scene.polarised().unwrap_or_else(|| left_out::is_followed(scene, &air, &albedo));
         let turbidity = 1.0 + air.haze().map_or(0.0, Haze::optical_depth) / air.molecular_depth()?;
-        Rung::of(scene.method).covers(&conditions(scene, turbidity))?;
+        Rung::of(scene.method).covers(&conditions(scene, turbidity, polarised))?;
         let wanted = &looked_at(scene);
-        let parts = Parts { wavelengths, albedo: &albedo, air: &air, data, place, sun_direction, wanted, scene, kept };
+        let parts = Parts {
+            wavelengths,
+            albedo: &albedo,
+            air: &air,
+            data,
+            place,
+            sun_direction,
+            wanted,
+            scene,
+            polarised,
+            kept,
+        };
         let carriers = wavelengths.packets().into_iter().map(|packet| {
             let carrier = match packet.lanes {
                 1 => parts.carry::<1>(&packet),
@@ -152,6 +165,7 @@ impl Sky {
                 None if scene.polarisation => Shows::Stokes,
                 None => Shows::Radiance,
             },
+            polarised,
             fitted,
             turbidity,
         })
@@ -167,7 +181,7 @@ impl Sky {
         if self.fitted.is_some() {
             return Err(SceneError::Refused("a fitted sky belongs to one sun".into()).into());
         }
-        Rung::of(scene.method).covers(&conditions(scene, self.turbidity))?;
+        Rung::of(scene.method).covers(&conditions(scene, self.turbidity, self.polarised))?;
         let wanted = looked_at(scene);
         (self.place, self.sun_direction) = (Place::above(scene.altitude_km * KM), scene.sun_direction());
         for (_, carrier) in &mut self.carriers {
@@ -235,16 +249,24 @@ impl Sky {
         if matches!(self.shows, Shows::Filtered(_)) { 0.5 } else { 1.0 }
     }
 
+    /// The scene that this is the sky of, with what was decided where it does not say: whether light is followed with its polarisation.
+    #[must_use]
+    pub fn decided(&self, scene: Scene) -> Scene {
+        let open = scene.polarised().is_none() && left_out::can_follow(&scene);
+        let decided = if open { Some(self.polarised) } else { scene.follow_polarisation };
+        Scene { follow_polarisation: decided, ..scene }
+    }
+
     /// Whether light is followed with its polarisation.
     #[must_use]
     pub fn is_polarised(&self) -> bool {
-        !matches!(self.shows, Shows::Radiance)
+        self.polarised
     }
 
     /// Whether radiances come from solved tables, without noise.
     #[must_use]
     pub fn is_solved(&self) -> bool {
-        self.table_error().is_some()
+        !self.carriers.is_empty() && self.carriers.iter().all(|(_, carrier)| carrier.is_solved())
     }
 
     /// Whether equal directions give equal radiances.
@@ -259,7 +281,7 @@ impl Sky {
         self.carriers.iter().map(|(_, carrier)| carrier.bytes()).sum()
     }
 
-    /// Relative error of the solved tables as they state it themselves; `None` if there are none.
+    /// Relative error of the solved tables as they state it themselves; `None` if there are none, or of a grid that was chosen.
     #[must_use]
     pub fn table_error(&self) -> Option<f64> {
         let errors = self.carriers.iter().map(|(_, carrier)| carrier.table_error());
@@ -377,12 +399,12 @@ impl Sky {
 }
 
 /// What the scene asks of its method.
-fn conditions(scene: &Scene, turbidity: f64) -> Conditions {
+fn conditions(scene: &Scene, turbidity: f64, polarised: bool) -> Conditions {
     Conditions {
         sun_elevation_deg: scene.sun_elevation_deg,
         altitude_km: scene.altitude_km,
         turbidity,
-        polarised: scene.is_polarised(),
+        polarised,
         flat: scene.flat,
     }
 }

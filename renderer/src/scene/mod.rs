@@ -21,7 +21,7 @@ use crate::atmosphere::{Amount, Depolarisation, HazePhase, HazeSettings, OzoneSo
 use crate::camera::{Camera, Projection, direction_at};
 use crate::data::Data;
 use crate::spectrum::{Scheme, Wavelengths};
-use crate::transport::Method;
+use crate::transport::{Fineness, Method};
 use glam::DVec3;
 use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -129,6 +129,11 @@ pub struct Scene {
     /// ([`Camera::level`]), e2 upwards.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub polarisation: bool,
+    /// Whether light is followed with its polarisation though the picture keeps radiance alone, which it changes by up to some percent. If
+    /// not given, it is by the methods that can, unless leaving it out is known to cost less than the error that is asked:
+    /// `table_error` of solved pictures, `error` of traced ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub follow_polarisation: Option<bool>,
     /// Axis of a polarising filter before the camera in degrees from e1 towards e2, -360 to 360: the picture is what passes.
     /// This and `polarisation` exclude each other.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -166,6 +171,9 @@ pub struct Scene {
     pub error: Option<f64>,
     /// Relative error that a solved table is to have, 1e-5 to 1: finer ones are solved until they state it or there is none finer.
     pub table_error: f64,
+    /// Grid on which tables are solved, with no other that tells their error; by `table_error` if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fineness: Option<Fineness>,
 }
 
 /// What the ground reflects: Lambertian.
@@ -212,6 +220,7 @@ impl Default for Scene {
             height: None,
             exposure_ev: None,
             polarisation: false,
+            follow_polarisation: None,
             filter_deg: None,
             method: Method::Solved,
             steps: None,
@@ -225,6 +234,7 @@ impl Default for Scene {
             block: None,
             error: None,
             table_error: 0.01,
+            fineness: None,
         }
     }
 }
@@ -279,10 +289,16 @@ impl Scene {
         Some(format!("{key} is {} in one, {} in the other", value(&ours), value(&theirs)))
     }
 
-    /// Whether light is followed with its polarisation.
+    /// Whether light is followed with its polarisation, if the scene says so: what a picture keeps of it comes before what is followed.
     #[must_use]
-    pub fn is_polarised(&self) -> bool {
-        self.polarisation || self.filter_deg.is_some()
+    pub fn polarised(&self) -> Option<bool> {
+        if self.polarisation || self.filter_deg.is_some() { Some(true) } else { self.follow_polarisation }
+    }
+
+    /// The error that is asked: of a solved table, or of a traced picture, which is that of a table if none is given.
+    #[must_use]
+    pub fn asked_error(&self) -> f64 {
+        self.error.filter(|_| self.method != Method::Solved).unwrap_or(self.table_error)
     }
 
     /// The first setting that says something of an aerosol, by its flag without dashes.
@@ -557,6 +573,8 @@ mod tests {
             "depolarisation",
             "sun_shape",
             "flat",
+            "fineness",
+            "follow_polarisation",
         ];
         assert!(newer.iter().all(|key| !json.contains(key)), "an old scene reads as before");
     }

@@ -158,6 +158,9 @@ impl Scene {
         if self.orders.is_some() && self.method.estimator().is_none() {
             return refuse("orders of scattering are counted along paths: take --method paths or judge".into());
         }
+        if self.fineness.is_some() && self.method != Method::Solved {
+            return refuse("fineness is that of solved tables: leave --method out".into());
+        }
         if self.colour != Scheme::Spectral && self.wavelengths_nm != Wavelengths::default() {
             let (name, own) = (self.colour.name(), self.colour.wavelengths().unwrap_or_default());
             let own: Vec<String> = own.nm().iter().map(f64::to_string).collect();

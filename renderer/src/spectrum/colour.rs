@@ -100,6 +100,14 @@ impl Colour {
     }
 }
 
+/// Weights by which values at increasing `nodes` become the value at x, as colours have it ([`Colour`]): the first node and its weight and those that
+/// follow.
+#[must_use]
+pub fn between(nodes: &[f64], x: f64) -> (usize, Vec<f64>) {
+    let (first, values, used) = cardinals(nodes, x);
+    (first, values[..used].to_vec())
+}
+
 /// Steps that differ by more than this factor are joined by lines: a cubic through uneven nodes swings far
 /// beyond their values.
 const EVEN: f64 = 3.0;

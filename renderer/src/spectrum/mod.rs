@@ -5,7 +5,7 @@ mod difference;
 mod scheme;
 mod wavelengths;
 
-pub use colour::{Colour, linear_srgb, luminance, xyz};
+pub use colour::{Colour, between, linear_srgb, luminance, xyz};
 pub use difference::{ciede2000, lab};
 pub use scheme::Scheme;
 pub use wavelengths::{MAX_WAVELENGTHS, Packet, SpectrumError, Wavelengths};

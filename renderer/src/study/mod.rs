@@ -1,8 +1,10 @@
 //! Error against size and cost, as tables for charts: `airlight study NAME` writes one, `airlight-tools chart` draws it.
 
+pub mod atlas;
 pub mod columns;
 pub mod ladder;
 pub mod neutral_points;
+pub mod plans;
 pub mod polarisation;
 pub mod solved;
 pub mod stability;

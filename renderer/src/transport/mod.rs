@@ -28,7 +28,9 @@ use crate::sampling::{Sampler, spiral};
 use glam::DVec3;
 pub use radiation::Pair;
 use radiation::{Both, Polarised, Radiation, Scalar};
-pub use solved::{Certificate, Certified, FINER, Fan, Panorama, Resolution, SolveError, Solved, Tables, covers_planet};
+pub use solved::{
+    Certificate, Certified, FINER, Fan, Fineness, Panorama, Resolution, SolveError, Solved, Tables, covers_planet,
+};
 
 use serde::{Deserialize, Serialize};
 

@@ -9,7 +9,7 @@ use tables::views::{AerosolSource, Biome};
 use tools::data::Data;
 use tools::study;
 #[cfg(feature = "plot")]
-use tools::{chart, column::Place, ladder, plot, stability, study::thesis::Thesis};
+use tools::{atlas, chart, column::Place, ladder, plot, stability, study::thesis::Thesis};
 
 /// What to draw, from which tables, to where.
 #[cfg(feature = "plot")]
@@ -142,7 +142,7 @@ pub(super) fn draw(args: &PlotArgs) -> Result<(), String> {
 pub(super) struct ChartArgs {
     /// CSV files: a line `# title`, the header panel,curve,X,Y with the names of the axes, and a row for each point; or the rows of
     /// `airlight study ladder`, which make a chart of all regimes and one of each; or those of `airlight study stability`, a figure of
-    /// each map
+    /// each map; or of `airlight study atlas`
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// Say nothing but errors
@@ -156,7 +156,10 @@ pub(super) fn chart(args: &ChartArgs) -> Result<(), String> {
     for file in &args.files {
         let name = file.display().to_string();
         let bytes = std::fs::read(file).map_err(|e| format!("{name}: cannot be read: {e}"))?;
-        let figures = if ladder::is_ladder(&bytes) {
+        let figures = if atlas::is_atlas(&bytes) {
+            let rows = atlas::parse(&name, &bytes).map_err(|e| e.to_string())?;
+            vec![(String::new(), plot::atlas::figure(&rows))]
+        } else if ladder::is_ladder(&bytes) {
             plot::ladder::figures(&ladder::parse(&name, &bytes).map_err(|e| e.to_string())?)
         } else if stability::is_stability(&bytes) {
             let maps = stability::parse(&name, &bytes).map_err(|e| e.to_string())?;

@@ -258,10 +258,21 @@ fn draw_cells<B: DrawingBackend>(
         canvas.rectangle(cell, colour, true)?;
         if cells.numbered {
             let middle = (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
-            canvas.text(&format!("{value:.0}"), middle, 0.85 * NUMBER, colours::on(colour), Place::Centred)?;
+            let text = number(value, &cells.scale);
+            canvas.text(&text, middle, 0.85 * NUMBER, colours::on(colour), Place::Centred)?;
         }
     }
     if cells.bar { draw_bar(canvas, cells, frame) } else { Ok(()) }
+}
+
+/// The number of a cell: whole, or with two digits where colours go by factors.
+fn number(value: f64, scale: &Axis) -> String {
+    match value {
+        value if !scale.logarithmic || value >= 10.0 => format!("{value:.0}"),
+        value if value >= 1.0 => format!("{value:.1}"),
+        value if value >= 0.01 => format!("{value:.2}"),
+        _ => "0".into(),
+    }
 }
 
 fn draw_bar<B: DrawingBackend>(canvas: &mut Canvas<B>, cells: &Cells, frame: Frame) -> Result<(), PlotError> {

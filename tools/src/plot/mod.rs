@@ -5,6 +5,7 @@
 
 mod aerosol;
 mod air;
+pub mod atlas;
 mod canvas;
 pub mod chart;
 mod coefficients;

@@ -8,7 +8,7 @@ use crate::film::tone;
 use crate::render::{RenderError, Sky};
 use crate::sampling::Sampler;
 use crate::scene::Scene;
-use crate::spectrum::{Wavelengths, ciede2000, lab, linear_srgb, xyz};
+use crate::spectrum::{Wavelengths, ciede2000};
 use glam::DVec3;
 use std::time::Instant;
 
@@ -128,14 +128,11 @@ fn luminance(seen: &[Vec<f64>], sky: &Sky, right: &Right) -> f64 {
     (seen.iter().zip(&right.colours).map(off).sum::<f64>() / right.colours.len() as f64).sqrt() / mean
 }
 
-/// Share of white that the logarithmic mean of the luminance becomes, as of a PNG that exposes itself.
-const KEY: f64 = 0.22;
-
 /// Mean CIEDE2000 of the pictures as they would be shown, both exposed for the right one, and that exposure.
 fn appearance(picture: &[[f64; 3]], right: &Right) -> (f64, f64) {
     let lit: Vec<f64> = right.pixels.iter().map(|(_, xyz)| xyz[1]).filter(|y| *y > 0.0).collect();
-    let white = (lit.iter().map(|y| y.ln()).sum::<f64>() / lit.len() as f64).exp() / KEY;
-    let shown = |colour: [f64; 3]| lab(xyz(tone::display(linear_srgb(colour), white)), xyz([1.0; 3]));
+    let white = tone::automatic_white(&lit);
+    let shown = |colour: [f64; 3]| tone::displayed(colour, white);
     let differences = picture.iter().zip(&right.pixels).filter(|(_, (_, exact))| exact[1] > 0.0);
     let sum: f64 = differences.map(|(found, (_, exact))| ciede2000(shown(*found), shown(*exact))).sum();
     (sum / lit.len() as f64, (white / tone::white_cd_m2(0.0)).log2())

@@ -23,10 +23,6 @@ const LANES: usize = 16;
 /// Directions that are looked in.
 pub(super) const DIRECTIONS: u32 = 64;
 
-/// Finer than [`Resolution::FINE`] in everything.
-const FINEST: Resolution =
-    Resolution { levels: 40, suns: 64, zeniths: [12, 7, 9], parts: 16, degree: 24, change: 2e-5 };
-
 const SHAPE: Shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
 
 /// Tables of an atmosphere, packet by packet.
@@ -53,7 +49,7 @@ impl Reference {
     /// Solves for the air and the ground of a scene.
     pub(super) fn new(data: &Data, size: Size, scene: &Scene) -> Result<Self, RenderError> {
         let resolutions = match size {
-            Size::Full => [FINEST, Resolution::FINE],
+            Size::Full => [Resolution::FINEST, Resolution::FINE],
             Size::Quick => [Resolution::FINE, Resolution::RENDER],
         };
         let small = Scene { method: Method::Paths, width: Some(1), height: Some(1), ..scene.clone() };

@@ -95,6 +95,7 @@ const ABOVE: [(f64, f64); 2] = [(12.0, 20.0), (400.0, 45.0)];
 pub(super) fn atmospheres(size: Size) -> Vec<Atmosphere> {
     let all = AIR.into_iter().enumerate().map(|(i, (biome, aod, albedo, month))| {
         let base = Scene {
+            follow_polarisation: Some(false),
             biome,
             aod,
             month,

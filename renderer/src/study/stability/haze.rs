@@ -56,7 +56,15 @@ struct Air {
 impl Air {
     fn new(data: &Data, biome: Biome, depth: f64) -> Result<Self, RenderError> {
         let (biome, aod) = if depth > 0.0 { (Some(biome), Some(depth)) } else { (None, None) };
-        let scene = Scene { biome, aod, method: Method::Paths, width: Some(1), height: Some(1), ..Scene::default() };
+        let scene = Scene {
+            biome,
+            aod,
+            method: Method::Paths,
+            follow_polarisation: Some(false),
+            width: Some(1),
+            height: Some(1),
+            ..Scene::default()
+        };
         let sky = Sky::new(&scene, data)?;
         let medium = sky.air().medium(&visible())?;
         let turbidity = 1.0 + sky.air().haze().map_or(0.0, Haze::optical_depth) / sky.air().molecular_depth()?;

@@ -1,6 +1,7 @@
 //! Where a field is tabulated: altitudes, zenith angles of the sun, directions.
 
 use crate::atmosphere::Medium;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// How fine a solution is; where phase functions have peaks, with four more altitudes and half as many more zenith angles.
@@ -18,6 +19,51 @@ pub struct Resolution {
     pub degree: usize,
     /// Relative change of the field by another order of scattering below which it counts as solved.
     pub change: f64,
+}
+
+/// A resolution by name: each takes two to three times as long as the one before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fineness {
+    /// What tells how exact the usual grid is
+    Coarse,
+    /// What pictures take
+    Usual,
+    /// Half-way to the fine one
+    Middle,
+    /// What reference cases take
+    Fine,
+    /// What the others are judged by
+    Finest,
+}
+
+impl Fineness {
+    /// All of them, from the coarsest.
+    pub const ALL: [Self; 5] = [Self::Coarse, Self::Usual, Self::Middle, Self::Fine, Self::Finest];
+
+    /// Its resolution.
+    #[must_use]
+    pub fn resolution(self) -> Resolution {
+        match self {
+            Self::Coarse => Resolution::COARSE,
+            Self::Usual => Resolution::RENDER,
+            Self::Middle => Resolution::MIDDLE,
+            Self::Fine => Resolution::FINE,
+            Self::Finest => Resolution::FINEST,
+        }
+    }
+
+    /// Its word in scene files and flags.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Coarse => "coarse",
+            Self::Usual => "usual",
+            Self::Middle => "middle",
+            Self::Fine => "fine",
+            Self::Finest => "finest",
+        }
+    }
 }
 
 /// The places of the table.

@@ -39,7 +39,7 @@ mod tests;
 mod view;
 
 pub use certify::{Certificate, Certified, Fan};
-pub use grid::Resolution;
+pub use grid::{Fineness, Resolution};
 pub use panorama::Panorama;
 
 use super::directions;
@@ -183,6 +183,12 @@ impl Resolution {
     /// A coarser one, whose distance from [`Resolution::RENDER`] tells how far that is from the truth.
     pub const COARSE: Self = Self { levels: 12, suns: 30, zeniths: [4, 3, 3], parts: 4, degree: 14, change: 5e-4 };
 
+    /// Between [`Resolution::RENDER`] and [`Resolution::FINE`].
+    pub const MIDDLE: Self = Self { levels: 24, suns: 44, zeniths: [8, 4, 6], parts: 6, degree: 17, change: 3e-4 };
+
+    /// Finer than [`Resolution::FINE`] in everything: what the others are judged by.
+    pub const FINEST: Self = Self { levels: 40, suns: 64, zeniths: [12, 7, 9], parts: 12, degree: 24, change: 1e-4 };
+
     /// Where phase functions have peaks: higher moments want closer directions, layers more levels.
     fn peaked(self) -> Self {
         Self { levels: self.levels + 4, zeniths: self.zeniths.map(|n| n + n / 2), ..self }
@@ -322,7 +328,10 @@ impl<const L: usize> Solved<L> {
     }
 
     /// As [`Solved::kept`], of polarised light or of radiance alone.
-    fn of(
+    ///
+    /// # Errors
+    /// As [`Solved::kept`].
+    pub fn of(
         (medium, shape, albedo, polarised): (&Medium<L>, Shape, [f64; L], bool),
         resolution: &Resolution,
         kept: Option<&Path>,

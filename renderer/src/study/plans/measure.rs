@@ -1,0 +1,281 @@
+//! What every candidate is off and costs on the scenes of one atmosphere.
+//!
+//! Transfers are compared at eight wavelengths ([`NODES`]), since what a grid is off varies slowly with wavelength; the spectrum between them is that of
+//! coarse tables at 31. With U(lambda) the latter and G(lambda_k) another transfer at the eight, G(lambda) = U(lambda) r(lambda) with r the cubic through
+//! G / U at the eight. The truth is T, of the finest polarised tables. What polarisation changes hardly depends on the grid: of the two finer grids only
+//! polarised tables are solved, and radiances, times and looks without it follow by the ratios of usual tables.
+
+use super::scenes::Set;
+use crate::clock::thread_s;
+use crate::data::Data;
+use crate::film::tone;
+use crate::plan::{Candidate, Costs, NODES, Row, SPECTRUM, Spectrum, TRANSFERS, Traits, Transfer};
+use crate::render::{RenderError, Sky};
+use crate::sampling::{Sampler, spiral};
+use crate::scene::Scene;
+use crate::spectrum::{Colour, Wavelengths, between, ciede2000};
+use crate::transport::{Fineness, Method};
+use glam::{DMat3, DVec3};
+use tables::units::{EARTH_RADIUS_M, KM};
+
+/// Radiance factors in sr^-1: of each direction, at each wavelength.
+type Factors = Vec<Vec<f64>>;
+
+/// What `work` gives, and the seconds that it takes this thread.
+fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let before = thread_s();
+    let made = work();
+    (made, thread_s() - before)
+}
+
+/// Where one looks: above the horizon from the ground, all around from within the air, at the planet and its air from space; even in solid angle.
+pub(in crate::study) fn directions(scene: &Scene, (count, turn): (u32, f64)) -> Vec<DVec3> {
+    let top = EARTH_RADIUS_M + scene.top_km * KM;
+    let sine = top / (EARTH_RADIUS_M + scene.altitude_km * KM);
+    let heights = match scene.altitude_km {
+        _ if sine < 1.0 => [-1.0, -((1.0 - sine) * (1.0 + sine)).sqrt()],
+        altitude if altitude > 1.0 => [-1.0, 1.0],
+        _ => [0.0, 1.0],
+    };
+    (0..count).map(|i| DMat3::from_rotation_z(turn) * spiral(i, count, heights)).collect()
+}
+
+/// For how long looks are timed, and how many at most.
+const LEAST_S: f64 = 0.015;
+const MOST_LOOKS: usize = 2000;
+
+/// A sky of an atmosphere, turned from scene to scene.
+struct Turned {
+    sky: Sky,
+    solve_s: f64,
+}
+
+impl Turned {
+    fn new(data: &Data, scene: &Scene) -> Result<Self, RenderError> {
+        // Of one pixel, so that nothing is looked at yet.
+        let scene = Scene { width: Some(1), height: Some(1), ..scene.clone() };
+        let (sky, solve_s) = timed(|| Sky::new(&scene, data));
+        Ok(Self { sky: sky?, solve_s })
+    }
+
+    /// What is seen of a scene, and the seconds of a look.
+    fn look(&mut self, scene: &Scene, directions: &[DVec3]) -> Result<(Factors, f64), RenderError> {
+        self.sky.turn(&Scene { width: Some(1), height: Some(1), ..scene.clone() })?;
+        let sampler = Sampler::new(0, 0, 0);
+        let look = || {
+            let one = |direction: &DVec3| {
+                let mut factors = vec![0.0; self.sky.wavelengths()];
+                self.sky.radiance(*direction, &sampler, &mut factors);
+                factors
+            };
+            directions.iter().map(one).collect::<Factors>()
+        };
+        let (seen, mut seconds) = timed(look);
+        let mut looks = directions.len();
+        // The clock goes in steps of some thousandths.
+        while seconds < LEAST_S && looks < MOST_LOOKS {
+            seconds += timed(look).1;
+            looks += directions.len();
+        }
+        Ok((seen, seconds / looks as f64))
+    }
+}
+
+/// Weights of colour, of each spectrum.
+struct Eyes {
+    nm: Vec<f64>,
+    whole: Colour,
+    spectra: Vec<(Vec<usize>, Colour)>,
+}
+
+impl Eyes {
+    fn new(data: &Data) -> Result<Self, RenderError> {
+        let whole = Wavelengths::visible(SPECTRUM).unwrap_or_default();
+        let of = |wavelengths: &Wavelengths| Colour::new(&data.sun, &data.observer, wavelengths);
+        let spectra = Spectrum::ALL.into_iter().map(|one| Ok((one.places(), of(&one.wavelengths())?)));
+        Ok(Self { nm: whole.nm().to_vec(), whole: of(&whole)?, spectra: spectra.collect::<Result<_, RenderError>>()? })
+    }
+
+    /// Values at some places of the spectrum, at all of it.
+    fn filled(&self, places: &[usize], values: &[f64]) -> Vec<f64> {
+        let nodes: Vec<f64> = places.iter().map(|&i| self.nm[i]).collect();
+        let at = |&nm: &f64| {
+            let (first, weights) = between(&nodes, nm);
+            weights.iter().zip(&values[first..]).map(|(w, v)| w * v).sum()
+        };
+        self.nm.iter().map(at).collect()
+    }
+
+    /// A transfer's factors at the whole spectrum, from those at the eight.
+    fn whole(&self, usual: &Factors, eight: &Factors) -> Factors {
+        let one = |(usual, eight): (&Vec<f64>, &Vec<f64>)| {
+            let ratio = |(&place, &value): (&usize, &f64)| if usual[place] > 0.0 { value / usual[place] } else { 0.0 };
+            let ratios: Vec<f64> = NODES.iter().zip(eight).map(ratio).collect();
+            usual.iter().zip(self.filled(&NODES, &ratios)).map(|(u, r)| u * r).collect()
+        };
+        usual.iter().zip(eight).map(one).collect()
+    }
+
+    /// What a transfer at one of the spectra is off: radiance, luminance, colour.
+    fn errors(&self, truth: &Factors, found: &Factors, spectrum: usize) -> [f64; 3] {
+        let (places, colour) = &self.spectra[spectrum];
+        let count = truth.len() as f64;
+        let few: Factors = found.iter().map(|factors| places.iter().map(|&i| factors[i]).collect()).collect();
+        let filled: Factors = few.iter().map(|factors| self.filled(places, factors)).collect();
+        let mut radiance = 0.0;
+        let kept = Spectrum::Even16.places();
+        for &j in &kept {
+            let mean = truth.iter().map(|t| t[j]).sum::<f64>() / count;
+            let square = truth.iter().zip(&filled).map(|(t, f)| (t[j] - f[j]).powi(2)).sum::<f64>() / count;
+            radiance += square / (mean * mean) / kept.len() as f64;
+        }
+        let right: Vec<[f64; 3]> = truth.iter().map(|factors| self.whole.xyz(factors)).collect();
+        let seen: Vec<[f64; 3]> = few.iter().map(|factors| colour.xyz(factors)).collect();
+        let mean = right.iter().map(|xyz| xyz[1]).sum::<f64>() / count;
+        let luminance = right.iter().zip(&seen).map(|(r, s)| (r[1] - s[1]).powi(2)).sum::<f64>() / count;
+        let white = tone::automatic_white(&right.iter().map(|xyz| xyz[1]).collect::<Vec<_>>());
+        let shown = |colour: &[f64; 3]| tone::displayed(*colour, white);
+        let difference = right.iter().zip(&seen).map(|(r, s)| ciede2000(shown(r), shown(s)).powi(2));
+        [radiance.sqrt(), luminance.sqrt() / mean, (difference.sum::<f64>() / count).sqrt()]
+    }
+}
+
+/// Samples of a path in each direction, to see how far they spread.
+const PATHS: u32 = 8;
+
+/// Side of the picture whose looks are counted.
+const SIDE: u32 = 64;
+
+/// Measures the scenes of an atmosphere.
+pub(super) fn measure(
+    data: &Data,
+    set: Set,
+    number: usize,
+    scenes: &[Scene],
+    step: &dyn Fn(f64),
+) -> Result<Vec<Row>, RenderError> {
+    let eyes = Eyes::new(data)?;
+    let eight = Spectrum::Even8.wavelengths();
+    let at = |transfer: Transfer, wavelengths: &Wavelengths| {
+        Turned::new(data, &Scene { wavelengths_nm: wavelengths.clone(), ..transfer.of(&scenes[0]) })
+    };
+    let table = |fineness, polarised| Transfer { fineness: Some(fineness), polarised };
+    let paths = Scene { method: Method::Paths, follow_polarisation: Some(true), ..scenes[0].clone() };
+    let mut done = 0.0;
+    let mut made = |transfer, wavelengths: &Wavelengths| {
+        let made = at(transfer, wavelengths);
+        done += 1.0;
+        step(done / 10.0);
+        made
+    };
+    let mut truth = made(table(Fineness::Finest, true), &eight)?;
+    let mut whole = made(table(Fineness::Coarse, false), &Wavelengths::visible(SPECTRUM).unwrap_or_default())?;
+    let mut four = made(table(Fineness::Coarse, false), &Spectrum::Seen4.wavelengths())?;
+    let mut transfers = Vec::new();
+    for one in TRANSFERS {
+        let follows = !one.polarised && matches!(one.fineness, Some(Fineness::Middle | Fineness::Fine));
+        transfers.push(if follows { None } else { Some(made(one, &eight)?) });
+    }
+    let mut paths = Turned::new(data, &paths)?;
+    let mut rows = Vec::new();
+    for scene in scenes {
+        let directions = directions(scene, set.directions());
+        let (detail, whole_look_s) = whole.look(scene, &directions)?;
+        let (_, four_look_s) = four.look(scene, &directions)?;
+        let right = eyes.whole(&detail, &truth.look(scene, &directions)?.0);
+        let mut looked: Vec<Option<(Factors, [f64; 2])>> = Vec::new();
+        for transfer in &mut transfers {
+            looked.push(match transfer {
+                None => None,
+                Some(one) => {
+                    let (seen, look_s) = one.look(scene, &directions)?;
+                    Some((seen, [one.solve_s, look_s]))
+                }
+            });
+        }
+        let usual = [false, true].map(|polarised| looked[table(Fineness::Usual, polarised).index()].clone());
+        let (mut errors, mut solve_look_s) = (Vec::new(), [[0.0; 2]; TRANSFERS.len()]);
+        for (i, one) in TRANSFERS.into_iter().enumerate() {
+            let polarised = Transfer { polarised: true, ..one }.index();
+            let (seen, times) = match (&looked[i], &looked[polarised], &usual) {
+                (Some(own), ..) => own.clone(),
+                (None, Some(with), [Some(scalar), Some(vector)]) => without(with, scalar, vector),
+                _ => return Err(RenderError::Measured("tables without polarisation have none with it".into())),
+            };
+            solve_look_s[i] = times;
+            let seen = eyes.whole(&detail, &seen);
+            errors.extend((0..Spectrum::ALL.len()).map(|spectrum| eyes.errors(&right, &seen, spectrum)));
+        }
+        let [coarse_solve_s, coarse_look_s] = solve_look_s[table(Fineness::Coarse, false).index()];
+        let usual = table(Fineness::Usual, false).index();
+        let looks = match &mut transfers[usual] {
+            Some(one) => panorama(one, scene, solve_look_s[usual][1])?,
+            None => [0.0; 2],
+        };
+        let costs = Costs {
+            solve_look_s,
+            lanes: [
+                [four.solve_s / coarse_solve_s, four_look_s / coarse_look_s],
+                [whole.solve_s / coarse_solve_s, whole_look_s / coarse_look_s],
+            ],
+            panorama: looks,
+            path: spread(&mut paths, scene, &directions)?,
+        };
+        let traits = Traits::of(scene, &whole.sky);
+        let ozone = (scene.month, scene.latitude_deg, whole.sky.air().ozone_du());
+        rows.push(Row { atmosphere: number, traits, ozone, errors, costs });
+    }
+    debug_assert!(rows.iter().all(|row| row.errors.len() == Candidate::COUNT));
+    Ok(rows)
+}
+
+/// What a table with polarisation would see and take without it, by two usual ones.
+fn without(
+    (seen, times): &(Factors, [f64; 2]),
+    (scalar, scalar_times): &(Factors, [f64; 2]),
+    (vector, vector_times): &(Factors, [f64; 2]),
+) -> (Factors, [f64; 2]) {
+    let ratio = |a: f64, b: f64| if b > 0.0 { a / b } else { 1.0 };
+    let rows = seen.iter().zip(scalar).zip(vector).map(|((seen, scalar), vector)| {
+        seen.iter().zip(scalar).zip(vector).map(|((seen, s), v)| seen * ratio(*s, *v)).collect()
+    });
+    (rows.collect(), std::array::from_fn(|i| times[i] * ratio(scalar_times[i], vector_times[i])))
+}
+
+/// Looks that a picture is found from, and what a pixel takes of one.
+fn panorama(turned: &mut Turned, scene: &Scene, look_s: f64) -> Result<[f64; 2], RenderError> {
+    let scene = Scene { width: Some(SIDE), height: Some(SIDE), ..scene.clone() };
+    let (turn, seconds) = timed(|| turned.sky.turn(&scene));
+    turn?;
+    let camera = scene.camera();
+    let middles = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (f64::from(x) + 0.5, f64::from(y) + 0.5)));
+    let pixels: Vec<DVec3> = middles.filter_map(|(x, y)| camera.direction(x, y)).collect();
+    let mut factors = vec![0.0; turned.sky.wavelengths()];
+    let ((), glances) = timed(|| {
+        for direction in &pixels {
+            turned.sky.radiance(*direction, &Sampler::new(0, 0, 0), &mut factors);
+        }
+    });
+    Ok([seconds / look_s, glances / pixels.len() as f64 / look_s])
+}
+
+/// Seconds of a polarised path, and the root of the mean square over directions of the spread of its luminance over the mean of all.
+fn spread(paths: &mut Turned, scene: &Scene, directions: &[DVec3]) -> Result<[f64; 2], RenderError> {
+    paths.sky.turn(scene)?;
+    let mut factors = vec![0.0; paths.sky.wavelengths()];
+    let (mut mean, mut variance) = (0.0, 0.0);
+    let ((), seconds) = timed(|| {
+        for (pixel, direction) in (0_u64..).zip(directions) {
+            let (mut sum, mut squares) = (0.0, 0.0);
+            for sample in 0..PATHS {
+                paths.sky.radiance(*direction, &Sampler::sobol(1, pixel, 0, sample), &mut factors);
+                let y = paths.sky.colour().xyz(&factors)[1];
+                (sum, squares) = (sum + y, squares + y * y);
+            }
+            let n = f64::from(PATHS);
+            mean += sum / n / directions.len() as f64;
+            variance += (squares - sum * sum / n) / (n - 1.0) / directions.len() as f64;
+        }
+    });
+    Ok([seconds / f64::from(PATHS) / directions.len() as f64, variance.sqrt() / mean])
+}
