@@ -101,8 +101,10 @@ impl Scene {
         range("month", f64::from(self.month), 1.0, 12.0, "")?;
         range("latitude", self.latitude_deg, -90.0, 90.0, " degrees")?;
         optional("ozone", self.ozone_du, 0.0, 1000.0, " DU")?;
-        if let Albedo::Grey(value) = self.albedo {
-            range("albedo", value, 0.0, 1.0, "")?;
+        match &self.albedo {
+            Albedo::Grey(value) => range("albedo", *value, 0.0, 1.0, "")?,
+            Albedo::Spectrum(spectrum) => spectrum.validate()?,
+            Albedo::Ground(_) => {}
         }
         self.validate_aerosol()?;
         self.validate_view()?;
