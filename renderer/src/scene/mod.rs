@@ -365,7 +365,7 @@ impl Scene {
     /// Azimuth and elevation of the view in degrees.
     pub(crate) fn view_deg(&self) -> (f64, f64) {
         let elevation = self.view_elevation_deg.unwrap_or(match (self.camera, self.in_space()) {
-            (CameraKind::Latlong, _) | (CameraKind::Pinhole, false) => 0.0,
+            (CameraKind::Latlong | CameraKind::EqualArea, _) | (CameraKind::Pinhole, false) => 0.0,
             (CameraKind::Pinhole, true) => -horizon_dip(self.altitude_km * KM).to_degrees(),
             (CameraKind::Fisheye, false) => 90.0,
             (CameraKind::Fisheye, true) => -90.0,
@@ -382,6 +382,7 @@ impl Scene {
             CameraKind::Fisheye => Projection::Fisheye { field_of_view },
             CameraKind::Pinhole => Projection::Pinhole { field_of_view },
             CameraKind::Latlong => Projection::LatLong,
+            CameraKind::EqualArea => Projection::EqualArea,
         };
         let (width, height) = self.size();
         let (azimuth, elevation) = self.view_deg();
