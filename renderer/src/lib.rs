@@ -16,6 +16,7 @@ pub mod polarisation;
 pub mod render;
 pub mod sampling;
 pub mod scene;
+pub mod sequence;
 pub mod spectrum;
 pub mod study;
 pub mod sweep;
