@@ -6,6 +6,7 @@ pub mod camera;
 pub mod cases;
 pub mod cli;
 mod clock;
+pub mod convention;
 pub mod data;
 pub mod film;
 pub mod geometry;
