@@ -6,7 +6,7 @@
 //! clockwise from north, elevation from the horizontal.
 
 use glam::DVec3;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 /// The unit vector at azimuth and elevation in radians:
 /// (cos e sin a, cos e cos a, sin e).
@@ -36,6 +36,12 @@ pub enum Projection {
     /// The whole sphere: azimuth across, increasing to the right, the view's azimuth in the
     /// middle column; elevation down, from the zenith in the first row to the nadir.
     LatLong,
+    /// The whole sphere on a square, every pixel of the same solid angle (Clarberg 2008, "Fast equal-area mapping of the (hemi)sphere using
+    /// SIMD"): with p, q from -1 to 1 across and down, r = 1 - |1 - |p| - |q||, z = +-(1 - r^2), above the horizon where |p| + |q| < 1,
+    /// the angle from the nearest of the first and second axis to the other phi = (pi/4) (1 + (|q| - |p|)/r), and the first and
+    /// second axis r sqrt(2 - r^2) (cos phi, sin phi) with the signs of p and q. The first axis is the horizontal direction of the view's
+    /// azimuth, the second is 90 degrees clockwise from it. The zenith is in the middle, the nadir in the corners.
+    EqualArea,
 }
 
 /// A projection, a size and an orientation.
@@ -52,7 +58,7 @@ pub struct Camera {
 
 impl Camera {
     /// A camera for a picture of `width` x `height` pixels that looks in the direction of
-    /// `azimuth` and `elevation` (radians; a [`Projection::LatLong`] heeds the azimuth only).
+    /// `azimuth` and `elevation` (radians; [`Projection::LatLong`] and [`Projection::EqualArea`] heed the azimuth only).
     ///
     /// The vertical is up in the picture and right = forward x up. Where it looks straight
     /// up or down, the horizontal direction of `azimuth` is up in the picture: with azimuth 0
@@ -93,7 +99,19 @@ impl Camera {
                 Some((self.forward * cos + outward * sin).normalize())
             }
             Projection::LatLong => Some(direction_at(self.azimuth + TAU * x / self.width, PI * y / self.height)),
+            Projection::EqualArea => Some(self.equal_area(2.0 * x / self.width, -2.0 * y / self.height)),
         }
+    }
+
+    /// See [`Projection::EqualArea`].
+    fn equal_area(&self, p: f64, q: f64) -> DVec3 {
+        let above = 1.0 - (p.abs() + q.abs());
+        let r = 1.0 - above.abs();
+        let angle = if r > 0.0 { FRAC_PI_4 * (1.0 + (q.abs() - p.abs()) / r) } else { 0.0 };
+        let level = r * (2.0 - r * r).max(0.0).sqrt();
+        let (first, second) = (direction_at(self.azimuth, 0.0), direction_at(self.azimuth + FRAC_PI_2, 0.0));
+        let across = first * angle.cos().copysign(p) + second * angle.sin().copysign(q);
+        (across * level + DVec3::Z * (1.0 - r * r).copysign(above)).normalize()
     }
 
     /// The horizontal unit vector, towards growing azimuth, across what the point (`px`, `py`) of the picture looks in: to the
@@ -231,6 +249,23 @@ mod tests {
         }
         assert!((sum / (4.0 * PI) - 1.0).abs() < 1e-3, "{sum}");
         assert!(close(camera.direction(10.0, 0.0).expect("sphere"), DVec3::Z));
+    }
+
+    #[test]
+    fn pixels_of_an_equal_area_picture_have_the_same_solid_angle() {
+        let camera = Camera::new(Projection::EqualArea, 64, 64, 1.0, 0.0);
+        let at = |x: f64, y: f64| camera.direction(x, y).expect("sphere");
+        for (i, j) in [(0, 0), (31, 31), (5, 40), (20, 3), (63, 10), (33, 60)] {
+            let (x, y, h) = (f64::from(i) + 0.3, f64::from(j) + 0.4, 1e-3);
+            let (across, down) = (at(x + h, y) - at(x - h, y), at(x, y + h) - at(x, y - h));
+            let angle = across.cross(down).length() / (4.0 * h * h);
+            // Differences of this step leave 1e-6 where the map bends most, near the axes of the square.
+            assert!((angle * 64.0 * 64.0 / (4.0 * PI) - 1.0).abs() < 1e-5, "{i} {j}: {angle}");
+        }
+        assert!(close(at(32.0, 32.0), DVec3::Z) && close(at(0.0, 64.0), -DVec3::Z));
+        assert!(
+            close(at(64.0, 32.0), direction_at(1.0, 0.0)) && close(at(32.0, 64.0), direction_at(1.0 + FRAC_PI_2, 0.0))
+        );
     }
 
     #[test]

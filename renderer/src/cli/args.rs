@@ -196,8 +196,9 @@ pub(super) struct RenderArgs {
     /// Ozone profile: ml (McPeters-Labow, by month and latitude) or arosa (by month) [default: ml]
     #[arg(long, value_name = "SOURCE", help_heading = "Sun, air and ground")]
     pub ozone_source: Option<OzoneName>,
-    /// Reflectance of the ground: 0 to 1, or dry-soil, wet-soil, ocean, or one of a --table [default: 0.1]
-    #[arg(long, value_name = "X|NAME", help_heading = "Sun, air and ground")]
+    /// Reflectance of the ground: 0 to 1; dry-soil, wet-soil, ocean, or one of a --table; or a CSV file with the columns
+    /// wavelength_nm,albedo [default: 0.1]
+    #[arg(long, value_name = "X|NAME|FILE.csv", help_heading = "Sun, air and ground")]
     pub albedo: Option<Albedo>,
 
     #[command(flatten)]

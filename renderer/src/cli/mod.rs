@@ -7,6 +7,7 @@
 mod args;
 mod auto;
 mod bench;
+mod light;
 mod merge;
 mod output;
 mod picture;
@@ -15,6 +16,7 @@ mod progress;
 mod radiance;
 mod render;
 mod scene;
+mod sequence;
 mod study;
 mod sweep;
 mod words;
@@ -32,6 +34,11 @@ enum Command {
     /// Say how a picture is made cheapest within an error, by stored measurements: method, wavelengths, what is left out and why that may be.
     /// Takes the flags of render
     Plan(Box<args::PlanArgs>),
+    /// Render a day, a sunset, an ascent or any course of sun, observer and camera as numbered frames without flicker, from tables that
+    /// are solved once. Takes the flags of render
+    Sequence(Box<sequence::SequenceArgs>),
+    /// Write the light of a sky for another renderer: an environment map in its orientation, and the sun apart. Takes the flags of render
+    Light(Box<light::LightArgs>),
     /// Write, check and show scene files
     #[command(subcommand)]
     Scene(args::SceneCommand),
@@ -81,6 +88,8 @@ pub fn main() -> ExitCode {
     let outcome = match Command::parse() {
         Command::Render(args) => render::run(&args),
         Command::Plan(args) => plan::run(&args),
+        Command::Light(args) => light::run(&args),
+        Command::Sequence(args) => sequence::run(&args),
         Command::Scene(command) => scene::run(&command),
         Command::Merge(args) => merge::run(&args),
         Command::Radiance(args) => radiance::run(&args),

@@ -51,6 +51,16 @@ impl Files {
         self.exr.with_file_name(name)
     }
 
+    /// Where the picture goes.
+    pub(super) fn exr(&self) -> &Path {
+        &self.exr
+    }
+
+    /// Where the picture to look at goes.
+    pub(super) fn png(&self) -> &Path {
+        &self.png
+    }
+
     /// Where the state of the run goes.
     pub(super) fn state(&self) -> Option<&Path> {
         self.state.as_deref()

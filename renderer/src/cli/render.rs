@@ -12,7 +12,7 @@ use crate::render::{
     Control, End, Extent, Head, Part, Progress, RenderError, Sky, State, Summary, certify, disc_layer, empty, go_on,
     receipt, replay,
 };
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Albedo, Scene, SceneError, Spectrum};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -123,7 +123,24 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
 /// The scene of the flags, laid over that of the file.
 pub(super) fn scene(args: &RenderArgs) -> Result<Scene, Failure> {
     let base = args.scene.as_deref().map(|path| read_scene(path, &args.tables)).transpose()?;
-    Ok(args.scene(base.unwrap_or_default())?)
+    let mut scene = args.scene(base.unwrap_or_default())?;
+    read_albedo(&mut scene, None)?;
+    Ok(scene)
+}
+
+/// Reads the spectrum of the ground if the scene names a CSV file, from the current folder or that of the scene's `file`: the
+/// scene then has the numbers themselves.
+fn read_albedo(scene: &mut Scene, file: Option<&Path>) -> Result<(), Failure> {
+    let Albedo::Ground(name) = &scene.albedo else { return Ok(()) };
+    if !has_extension(Path::new(name), "csv") {
+        return Ok(());
+    }
+    let beside = file.and_then(Path::parent).map(|folder| folder.join(name)).filter(|path| path.is_file());
+    let path = beside.unwrap_or_else(|| name.into());
+    let text = std::fs::read(&path).map_err(|error| Failure::error(format!("{}: {error}", path.display())))?;
+    let spectrum = Spectrum::from_csv(&text);
+    scene.albedo = Albedo::Spectrum(spectrum.map_err(|error| Failure::usage(format!("{}: {error}", path.display())))?);
+    Ok(())
 }
 
 /// The scene turned into something that answers.
@@ -147,6 +164,7 @@ fn resumed(args: &RenderArgs, state: &State, path: &Path) -> Result<Scene, Failu
         return refuse(format!("it is shard {}, not {shard}", part.shard));
     }
     let mut scene = args.scene(was.clone())?;
+    read_albedo(&mut scene, None)?;
     // Another effort does not change the blocks, but they are said only where they are not the default.
     if args.block.is_none() && scene.block() != was.block() {
         scene.block = Some(was.block());
@@ -231,6 +249,7 @@ pub(super) fn read_scene(path: &Path, tables: &[String]) -> Result<Scene, Failur
         Scene::from_json(text)
     };
     let mut scene = read.map_err(|error| Failure::usage(at(&error)))?;
+    read_albedo(&mut scene, Some(path))?;
     if tables.is_empty() {
         for table in &mut scene.tables {
             *table = super::picture::find_table(table, path, made_with)?;

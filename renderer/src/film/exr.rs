@@ -90,6 +90,34 @@ pub fn encode(
             own.other.insert(text("polarisationHandedness"), AttributeValue::Text(text("right")));
         }
     }
+    note(&mut own, attributes);
+    file((width as usize, height as usize), own, list)
+}
+
+/// An EXR file of a map of light: the channels R, G, B alone, the picture's linear sRGB, the disc included, over `white_luminance` in cd/m^2,
+/// which the file says of itself (`whiteLuminance`).
+///
+/// # Errors
+/// As [`encode`].
+pub fn encode_map(
+    picture: &Picture<'_>,
+    white_luminance: f64,
+    attributes: &[(String, Attribute)],
+) -> Result<Vec<u8>, EncodeError> {
+    let (width, height) = picture.film.size();
+    let pixels: Vec<[f64; 3]> = (0..width as usize * height as usize).map(|pixel| picture.rgb(pixel)).collect();
+    let channel = |(c, name): (usize, &str)| {
+        let samples = pixels.iter().map(|rgb| (rgb[c] / white_luminance) as f32).collect();
+        AnyChannel::new(text(name), FlatSamples::F32(samples))
+    };
+    let list = ["R", "G", "B"].into_iter().enumerate().map(channel).collect();
+    let mut own = LayerAttributes { white_luminance: Some(white_luminance as f32), ..LayerAttributes::default() };
+    note(&mut own, attributes);
+    file((width as usize, height as usize), own, list)
+}
+
+/// Attributes of one's own.
+fn note(own: &mut LayerAttributes, attributes: &[(String, Attribute)]) {
     for (name, value) in attributes {
         let value = match value {
             Attribute::Text(value) => AttributeValue::Text(text(value)),
@@ -98,9 +126,16 @@ pub fn encode(
         };
         own.other.insert(text(name), value);
     }
+}
+
+/// The file of some channels.
+fn file(
+    size: (usize, usize),
+    own: LayerAttributes,
+    list: SmallVec<[AnyChannel<FlatSamples>; 4]>,
+) -> Result<Vec<u8>, EncodeError> {
     let encoding =
         Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
-    let size = (width as usize, height as usize);
     let mut image = Image::from_layer(Layer::new(size, own, encoding, AnyChannels::sort(list)));
     image.attributes.chromaticities = Some(Chromaticities {
         red: Vec2(0.64, 0.33),

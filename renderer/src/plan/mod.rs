@@ -88,7 +88,7 @@ impl Traits {
     pub fn of(scene: &Scene, sky: &Sky) -> Self {
         let albedo = match scene.albedo {
             Albedo::Grey(albedo) => albedo,
-            Albedo::Ground(_) => sky.albedo().iter().sum::<f64>() / sky.albedo().len() as f64,
+            Albedo::Ground(_) | Albedo::Spectrum(_) => sky.albedo().iter().sum::<f64>() / sky.albedo().len() as f64,
         };
         Self {
             biome: scene.biome,

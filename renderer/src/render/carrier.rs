@@ -147,7 +147,8 @@ pub(super) trait Carrier: Debug + Send + Sync {
         see: &mut dyn FnMut(usize, Stokes),
     );
     fn add_disc(&self, from: Place, direction: DVec3, weight: f64, factors: &mut [f64]) -> bool;
-    fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]);
+    /// Adds to the irradiance of a surface with that normal.
+    fn add_direct(&self, from: Place, normal: DVec3, u: [f64; 2], weight: f64, factors: &mut [f64]);
     fn table_error(&self) -> Option<f64>;
     fn is_solved(&self) -> bool;
     /// What a cheap method states of its own error.
@@ -320,9 +321,9 @@ impl<const L: usize> Carrier for Lanes<L> {
         true
     }
 
-    fn add_direct(&self, from: Place, u: [f64; 2], weight: f64, factors: &mut [f64]) {
+    fn add_direct(&self, from: Place, normal: DVec3, u: [f64; 2], weight: f64, factors: &mut [f64]) {
         let (direction, darkening) = self.sun.sample(u);
-        let cosine = direction.dot(from.up);
+        let cosine = direction.dot(normal);
         if cosine <= 0.0 {
             return;
         }

@@ -325,6 +325,12 @@ impl Sky {
     /// sqrt(1 - u), in which the darkening is a polynomial (in u it has a root at the limb): 3e-5.
     #[must_use]
     pub fn direct_irradiance(&self) -> Vec<f64> {
+        self.direct_irradiance_of(self.place.up)
+    }
+
+    /// As [`Sky::direct_irradiance`], of a surface at the observer with that unit normal; [`Sky::sun_direction`] of one that faces the sun.
+    #[must_use]
+    pub fn direct_irradiance_of(&self, normal: DVec3) -> Vec<f64> {
         const RINGS: u32 = 64;
         const SECTORS: u32 = 16;
         let mut factors = vec![0.0; self.wavelengths()];
@@ -335,7 +341,7 @@ impl Sky {
                 for sector in 0..SECTORS {
                     let u = [1.0 - mu * mu, (f64::from(sector) + 0.5) / f64::from(SECTORS)];
                     for (range, carrier) in &self.carriers {
-                        carrier.add_direct(self.place, u, weight, &mut factors[range.clone()]);
+                        carrier.add_direct(self.place, normal, u, weight, &mut factors[range.clone()]);
                     }
                 }
             }

@@ -3,6 +3,7 @@
 //! A scene can be written as JSON and is carried by the pictures made from it. Keys are
 //! the names of the fields; a key that is left out has its default, an unknown key is an error.
 
+mod albedo;
 mod file;
 mod mitsuba;
 mod moment;
@@ -10,6 +11,7 @@ mod names;
 mod schema;
 mod validate;
 
+pub use albedo::{Albedo, AlbedoError, Spectrum};
 pub use mitsuba::Imported;
 pub use moment::{Moment, SunPlace};
 pub(crate) use names::word;
@@ -19,14 +21,11 @@ pub use validate::SceneError;
 
 use crate::atmosphere::{Amount, Depolarisation, HazePhase, HazeSettings, OzoneSource};
 use crate::camera::{Camera, Projection, direction_at};
-use crate::data::Data;
 use crate::spectrum::{Scheme, Wavelengths};
 use crate::transport::{Fineness, Method};
 use glam::DVec3;
-use serde::de::Visitor;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 use std::path::{Component, Path};
-use std::str::FromStr;
 use tables::units::{EARTH_RADIUS_M, KM};
 use tables::views::{AerosolSource, Biome};
 
@@ -99,7 +98,8 @@ pub struct Scene {
     /// Own tables by their paths: each replaces, for this picture, the one of its kind; grounds are added.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tables: Vec<String>,
-    /// Reflectance of the ground.
+    /// Reflectance of the ground: a number, 0 to 1; the name of a ground; a CSV file (wavelength_nm,albedo); or its numbers,
+    /// [[400.0, 0.02], [700.0, 0.3]].
     #[schemars(schema_with = "schema::albedo")]
     pub albedo: Albedo,
     /// Wavelengths in nm. Default: 16 from 380 to 780 nm.
@@ -174,16 +174,6 @@ pub struct Scene {
     /// Grid on which tables are solved, with no other that tells their error; by `table_error` if not given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fineness: Option<Fineness>,
-}
-
-/// What the ground reflects: Lambertian.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Albedo {
-    /// The same at every wavelength, 0 to 1.
-    Grey(f64),
-    /// The spectrum of a ground of the data, by name.
-    Ground(String),
 }
 
 impl Default for Scene {
@@ -381,9 +371,9 @@ impl Scene {
     }
 
     /// Azimuth and elevation of the view in degrees.
-    fn view_deg(&self) -> (f64, f64) {
+    pub(crate) fn view_deg(&self) -> (f64, f64) {
         let elevation = self.view_elevation_deg.unwrap_or(match (self.camera, self.in_space()) {
-            (CameraKind::Latlong, _) | (CameraKind::Pinhole, false) => 0.0,
+            (CameraKind::Latlong | CameraKind::EqualArea, _) | (CameraKind::Pinhole, false) => 0.0,
             (CameraKind::Pinhole, true) => -horizon_dip(self.altitude_km * KM).to_degrees(),
             (CameraKind::Fisheye, false) => 90.0,
             (CameraKind::Fisheye, true) => -90.0,
@@ -400,36 +390,11 @@ impl Scene {
             CameraKind::Fisheye => Projection::Fisheye { field_of_view },
             CameraKind::Pinhole => Projection::Pinhole { field_of_view },
             CameraKind::Latlong => Projection::LatLong,
+            CameraKind::EqualArea => Projection::EqualArea,
         };
         let (width, height) = self.size();
         let (azimuth, elevation) = self.view_deg();
         Camera::new(projection, width, height, azimuth.to_radians(), elevation.to_radians())
-    }
-
-    /// Albedo of the ground at each wavelength.
-    ///
-    /// # Errors
-    /// As [`Scene::albedo_at`].
-    pub fn albedo_spectrum(&self, data: &Data) -> Result<Vec<f64>, SceneError> {
-        self.albedo_at(data, self.wavelengths().nm())
-    }
-
-    /// Albedo of the ground at some wavelengths in nm.
-    ///
-    /// # Errors
-    /// [`SceneError::Unknown`] for a ground that the data do not have, [`SceneError::Ground`]
-    /// for a wavelength that its spectrum does not reach.
-    pub fn albedo_at(&self, data: &Data, wavelengths_nm: &[f64]) -> Result<Vec<f64>, SceneError> {
-        let name = match &self.albedo {
-            Albedo::Grey(value) => return Ok(vec![*value; wavelengths_nm.len()]),
-            Albedo::Ground(name) => name,
-        };
-        let grounds = &data.ground_albedo.spectra;
-        let Some(spectrum) = grounds.get(name) else {
-            return Err(SceneError::unknown("albedo", name, grounds.keys().map(String::as_str)));
-        };
-        let at = |&nm: &f64| spectrum.at(nm).map_err(|source| SceneError::Ground { name: name.clone(), source });
-        wavelengths_nm.iter().map(at).collect()
     }
 }
 
@@ -453,58 +418,9 @@ fn portable(path: &str) -> String {
 
 /// How far the horizon lies below the horizontal in radians, seen from `altitude_m`:
 /// sin dip = sqrt(h (2R + h)) / (R + h).
-fn horizon_dip(altitude_m: f64) -> f64 {
+pub(crate) fn horizon_dip(altitude_m: f64) -> f64 {
     let radius = EARTH_RADIUS_M + altitude_m;
     ((altitude_m * (EARTH_RADIUS_M + radius)).sqrt() / radius).asin()
-}
-
-/// A number is grey, a string the name of a ground. (Derived, it would keep whatever else stands there in memory.)
-impl<'de> Deserialize<'de> for Albedo {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        struct NumberOrName;
-        impl Visitor<'_> for NumberOrName {
-            type Value = Albedo;
-
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("a reflectance or the name of a ground")
-            }
-
-            fn visit_f64<E>(self, value: f64) -> Result<Albedo, E> {
-                Ok(Albedo::Grey(value))
-            }
-
-            fn visit_u64<E>(self, value: u64) -> Result<Albedo, E> {
-                Ok(Albedo::Grey(value as f64))
-            }
-
-            fn visit_i64<E>(self, value: i64) -> Result<Albedo, E> {
-                Ok(Albedo::Grey(value as f64))
-            }
-
-            fn visit_str<E>(self, name: &str) -> Result<Albedo, E> {
-                Ok(Albedo::Ground(name.into()))
-            }
-        }
-        from.deserialize_any(NumberOrName)
-    }
-}
-
-/// A number is grey, anything else the name of a ground.
-impl FromStr for Albedo {
-    type Err = std::convert::Infallible;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Ok(text.parse().map_or_else(|_| Self::Ground(text.into()), Self::Grey))
-    }
-}
-
-impl std::fmt::Display for Albedo {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Grey(value) => value.fmt(f),
-            Self::Ground(name) => f.write_str(name),
-        }
-    }
 }
 
 #[cfg(test)]

@@ -8,6 +8,9 @@ use std::fmt::{Display, Formatter};
 use std::str::FromStr;
 use toml::value::{Datetime, Offset};
 
+/// Seconds of a day.
+const DAY_S: f64 = 86_400.0;
+
 /// A date with a time of day and its offset from UTC, as of RFC 3339: `2026-06-21T18:30:00+02:00`, `2026-06-21T16:30:00Z`. Years 0 to 6000.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moment(Datetime);
@@ -36,15 +39,36 @@ impl Moment {
     /// # Errors
     /// [`SceneError::Refused`] with what the crate says of it: a date that no calendar has, a place outside the Earth.
     pub fn sun(&self, latitude_deg: f64, longitude_deg: f64) -> Result<SunPlace, SceneError> {
+        self.sun_after(0.0, latitude_deg, longitude_deg)
+    }
+
+    /// As [`Moment::sun`], so many seconds later, or earlier if they are negative.
+    ///
+    /// # Errors
+    /// As [`Moment::sun`].
+    pub fn sun_after(&self, seconds: f64, latitude_deg: f64, longitude_deg: f64) -> Result<SunPlace, SceneError> {
         let refuse = |error: solar_positioning::Error| SceneError::Refused(format!("date {self}: {error}"));
-        let time = self.julian().map_err(refuse)?;
+        let time = self.julian(seconds).map_err(refuse)?;
         let place = Location { latitude: latitude_deg, longitude: longitude_deg };
         let sun = SolarPositions::new().at_from_julian(time, place, 0.0, None).map_err(refuse)?;
         let distance_au = distance_au(time.julian_date());
         Ok(SunPlace { elevation_deg: sun.elevation_angle(), azimuth_deg: sun.azimuth(), distance_au })
     }
 
-    fn julian(&self) -> solar_positioning::Result<JulianDate> {
+    /// Seconds from this instant to another, by their Julian dates: to 1e-4 s.
+    ///
+    /// # Errors
+    /// As [`Moment::sun`].
+    pub fn seconds_until(&self, other: &Self) -> Result<f64, SceneError> {
+        let of = |moment: &Self| {
+            let refuse = |error: solar_positioning::Error| SceneError::Refused(format!("date {moment}: {error}"));
+            moment.julian(0.0).map(|time| time.julian_date()).map_err(refuse)
+        };
+        Ok((of(other)? - of(self)?) * DAY_S)
+    }
+
+    /// The instant so many seconds later.
+    fn julian(&self, later_s: f64) -> solar_positioning::Result<JulianDate> {
         let Datetime { date: Some(date), time: Some(time), offset: Some(offset) } = self.0 else {
             // Not made by `from_str`.
             return JulianDate::new(f64::NAN, 0.0);
@@ -59,7 +83,7 @@ impl Moment {
             Offset::Z => 0,
             Offset::Custom { minutes } => minutes,
         };
-        JulianDate::new(local.julian_date() - f64::from(minutes) / 1440.0, delta_t)
+        JulianDate::new(local.julian_date() - f64::from(minutes) / 1440.0 + later_s / DAY_S, delta_t)
     }
 }
 

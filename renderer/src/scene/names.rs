@@ -12,6 +12,16 @@ pub enum CameraKind {
     Pinhole,
     /// The whole sphere, azimuth across and elevation down
     Latlong,
+    /// The whole sphere as a square, folded from an octahedron, every pixel of the same solid angle: environment maps of pbrt-v4
+    EqualArea,
+}
+
+impl CameraKind {
+    /// Whether it shows the whole sphere, whatever the view's elevation.
+    #[must_use]
+    pub fn is_whole(self) -> bool {
+        matches!(self, Self::Latlong | Self::EqualArea)
+    }
 }
 
 /// Form of the sun as a light.

@@ -39,7 +39,12 @@ pub(super) fn method(_: &mut SchemaGenerator) -> Schema {
 }
 
 pub(super) fn albedo(_: &mut SchemaGenerator) -> Schema {
-    json_schema!({ "anyOf": [{ "type": "number", "minimum": 0, "maximum": 1 }, { "type": "string" }] })
+    let pair = json_schema!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 });
+    json_schema!({ "anyOf": [
+        { "type": "number", "minimum": 0, "maximum": 1 },
+        { "type": "string" },
+        { "type": "array", "items": pair, "minItems": 2 },
+    ] })
 }
 
 pub(super) fn wavelengths(_: &mut SchemaGenerator) -> Schema {

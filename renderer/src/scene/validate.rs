@@ -101,8 +101,10 @@ impl Scene {
         range("month", f64::from(self.month), 1.0, 12.0, "")?;
         range("latitude", self.latitude_deg, -90.0, 90.0, " degrees")?;
         optional("ozone", self.ozone_du, 0.0, 1000.0, " DU")?;
-        if let Albedo::Grey(value) = self.albedo {
-            range("albedo", value, 0.0, 1.0, "")?;
+        match &self.albedo {
+            Albedo::Grey(value) => range("albedo", *value, 0.0, 1.0, "")?,
+            Albedo::Spectrum(spectrum) => spectrum.validate()?,
+            Albedo::Ground(_) => {}
         }
         self.validate_aerosol()?;
         self.validate_view()?;
@@ -185,18 +187,24 @@ impl Scene {
         match self.camera {
             CameraKind::Fisheye => optional("fov", self.fov_deg, 1.0, 360.0, " degrees for a fisheye")?,
             CameraKind::Pinhole => optional("fov", self.fov_deg, 0.01, 179.0, " degrees for a pinhole")?,
-            CameraKind::Latlong if self.fov_deg.is_some() || self.view_elevation_deg.is_some() => {
-                return Err(SceneError::Refused(
-                    "a latlong picture always shows the whole sphere: leave out --fov and --view-elevation".into(),
-                ));
+            CameraKind::Latlong | CameraKind::EqualArea => {
+                if self.fov_deg.is_some() || self.view_elevation_deg.is_some() {
+                    return Err(SceneError::Refused(
+                        "a latlong or equal-area picture always shows the whole sphere: leave out --fov and --view-elevation".into(),
+                    ));
+                }
             }
-            CameraKind::Latlong => {}
         }
         optional("view-azimuth", self.view_azimuth_deg, -360.0, 360.0, " degrees")?;
         optional("view-elevation", self.view_elevation_deg, -90.0, 90.0, " degrees")?;
         let (width, height) = self.size();
         range("width", f64::from(width), 1.0, MAX_SIZE, " pixels")?;
         range("height", f64::from(height), 1.0, MAX_SIZE, " pixels")?;
+        if self.camera == CameraKind::EqualArea && width != height {
+            return Err(SceneError::Refused(format!(
+                "an equal-area picture is a square, not {width} x {height} pixels"
+            )));
+        }
         let bytes = Film::bytes(width, height, self.channels(), self.polarisation);
         if bytes > MAX_FILM_BYTES {
             let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
