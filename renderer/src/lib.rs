@@ -8,6 +8,7 @@ pub mod cli;
 mod clock;
 pub mod data;
 pub mod film;
+pub mod gallery;
 pub mod geometry;
 pub mod light;
 pub mod phase;
