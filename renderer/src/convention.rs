@@ -105,7 +105,7 @@ impl Program {
 mod tests {
     use super::*;
     use crate::data::Data;
-    use crate::film::{Picture, png};
+    use crate::film::{Development, Picture, png};
     use crate::render::{Control, Sky, disc_layer, render};
     use crate::scene::Scene;
     use crate::spectrum::Wavelengths;
@@ -175,7 +175,7 @@ mod tests {
             let picture = Picture { film: &film, disc: &disc_layer(&scene, &sky), colour: sky.colour() };
             let (width, height) = scene.size();
             // The eight-bit picture exposed for the disc: all else is black.
-            let pixels = png::pixels(&picture, 22.0);
+            let pixels = png::pixels(&picture, &Development::new(scene.tone, scene.white, sky.sun_white(), 22.0));
             let brightest = (0..pixels.len() / 3).max_by_key(|i| pixels[3 * i + 1]).expect("pixels");
             let [u, v] = lookup(program, program.axes(scene.sun_direction()));
             let looked = (v * f64::from(height)) as usize * width as usize + (u * f64::from(width)) as usize;

@@ -9,6 +9,7 @@ mod clock;
 pub mod convention;
 pub mod data;
 pub mod film;
+pub mod gallery;
 pub mod geometry;
 pub mod light;
 pub mod phase;

@@ -5,6 +5,7 @@ use super::words::{
     count, pixel, share, time,
 };
 use crate::atmosphere::Depolarisation;
+use crate::film::{Tone, White};
 use crate::plan::Metric;
 use crate::render::Shard;
 use crate::scene::{Albedo, CameraKind, Moment, Scene, SceneError, SunShape, word};
@@ -24,6 +25,9 @@ pub(super) struct RenderArgs {
     /// Scene to start from: TOML (`airlight scene new`), JSON, or the EXR file of a picture, which carries it; flags override it
     #[arg(value_name = "SCENE")]
     pub scene: Option<PathBuf>,
+    /// Start from a scene of the gallery instead: `airlight scene new --list` lists them
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["scene", "resume"], help_heading = "Files")]
+    pub preset: Option<String>,
     #[command(flatten)]
     pub files: PictureArgs,
     /// A table of your own (`airlight-tools import`): it replaces, for this picture, the one of its kind in --data, or
@@ -222,6 +226,13 @@ pub(super) struct PictureArgs {
     /// logarithm of the luminance becomes 22 % of white]
     #[arg(long, value_name = "EV")]
     pub exposure: Option<f64>,
+    /// Tone curve of the PNG [default: shoulder]
+    #[arg(long, value_name = "CURVE")]
+    pub tone: Option<Tone>,
+    /// What the PNG shows as white: d65, e, sun (that above the air) or daylight of a colour temperature, 4000K to 25000K; colours are
+    /// adapted by Bradford's transform [default: d65, as they are]
+    #[arg(long, value_name = "WHITE")]
+    pub white: Option<White>,
     /// Say nothing but errors
     #[arg(long)]
     pub quiet: bool,
@@ -326,6 +337,12 @@ pub(super) enum SceneCommand {
         /// File to write, which must not be there; standard output if none is given
         #[arg(value_name = "FILE.toml")]
         file: Option<PathBuf>,
+        /// Begin with a scene of the gallery
+        #[arg(long, value_name = "NAME")]
+        preset: Option<String>,
+        /// List the presets, a line each, and write nothing
+        #[arg(long, conflicts_with_all = ["file", "preset"])]
+        list: bool,
     },
     /// Say whether scene files can be rendered, and with which tables
     Check {
@@ -579,6 +596,8 @@ impl RenderArgs {
             width: self.width.or(base.width),
             height: self.height.or(base.height),
             exposure_ev: self.files.exposure.or(base.exposure_ev),
+            tone: self.files.tone.unwrap_or(base.tone),
+            white: self.files.white.unwrap_or(base.white),
             // Either replaces the other of the scene.
             polarisation: self
                 .polarisation

@@ -8,7 +8,7 @@ use super::words::Switch;
 use super::{Failure, Outcome, unwritable};
 use crate::convention::Program;
 use crate::data::Data;
-use crate::film::{Picture, exr, png, tone};
+use crate::film::{Development, Picture, exr, png, tone};
 use crate::light::solar_angular_radius_at;
 use crate::render::{Control, End, Part, Progress, Shard, Sky, Summary, disc_layer, receipt, render};
 use crate::scene::Scene;
@@ -43,6 +43,7 @@ pub(super) fn run(args: &LightArgs) -> Result<Outcome, Failure> {
     }
     let stop = stop_on_interrupt();
     let sky = pool.install(|| sky(&scene, &data, folder))?;
+    let scene = sky.decided(scene);
     let line = Line::new(args.render.files.quiet);
     let observe = |progress: Progress| line.show(progress.fraction, |_| format!("error {}", percent(progress.error)));
     let work = || {
@@ -57,11 +58,12 @@ pub(super) fn run(args: &LightArgs) -> Result<Outcome, Failure> {
         return Ok(Outcome::Interrupted);
     }
     let picture = Picture { film: &rendering.film, disc: &disc, colour: sky.colour() };
-    let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(&picture));
+    let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(rendering.film.luminances()));
     let parts = [Part { seed: scene.seed, shard: Shard::default() }];
     let attributes = receipt::receipt(&scene, &sky, &parts, &rendering, (&summary, exposure_ev), (None, None));
     let map = exr::encode_map(&picture, args.program.white_luminance(), &attributes).map_err(Failure::error)?;
-    let shown = png::encode(&picture, exposure_ev).map_err(Failure::error)?;
+    let shown = png::encode(&picture, &Development::new(scene.tone, scene.white, sky.sun_white(), exposure_ev))
+        .map_err(Failure::error)?;
     let told = words(args.program, &scene, &sky, &summary, files.exr());
     let text = serde_json::to_string_pretty(&told).map_err(Failure::error)? + "\n";
     let json_path = files.exr().with_extension("json");

@@ -38,6 +38,8 @@ pub(super) fn run(args: &MergeArgs) -> Result<Outcome, Failure> {
     let Some(film) = sum else { return Err(Failure::usage("nothing to merge")) };
     let mut head = plan.head(&film);
     head.scene.exposure_ev = args.files.exposure.or(head.scene.exposure_ev);
+    head.scene.tone = args.files.tone.unwrap_or(head.scene.tone);
+    head.scene.white = args.files.white.unwrap_or(head.scene.white);
     head.scene.validate()?;
     let scene = head.scene.clone();
     let data = Data::load(&args.files.data).map_err(Failure::error)?;

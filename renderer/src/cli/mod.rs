@@ -7,6 +7,7 @@
 mod args;
 mod auto;
 mod bench;
+mod gallery;
 mod light;
 mod merge;
 mod output;
@@ -42,6 +43,8 @@ enum Command {
     /// Write, check and show scene files
     #[command(subcommand)]
     Scene(args::SceneCommand),
+    /// Render the figures of the gallery: the counterparts of those of the thesis, and others
+    Gallery(gallery::GalleryArgs),
     /// Put runs with different seeds or shards together as one picture
     Merge(args::MergeArgs),
     /// Answer a file of reference cases: radiances with their standard errors
@@ -91,6 +94,7 @@ pub fn main() -> ExitCode {
         Command::Light(args) => light::run(&args),
         Command::Sequence(args) => sequence::run(&args),
         Command::Scene(command) => scene::run(&command),
+        Command::Gallery(args) => gallery::run(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Radiance(args) => radiance::run(&args),
         Command::Bench(args) => bench::run(&args),
@@ -110,6 +114,15 @@ pub fn main() -> ExitCode {
 /// A file that cannot be written.
 fn unwritable(path: &std::path::Path, error: &std::io::Error) -> Failure {
     Failure::error(format!("{}: cannot be written: {error}", path.display()))
+}
+
+/// A name that nothing has, with the nearest known one, or all of them.
+fn unknown<'a>(what: &str, name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> Failure {
+    let hint = match tables::nearest(name, known.clone()) {
+        Some(near) => format!("; did you mean {near}?"),
+        None => format!("; known are {}", known.into_iter().collect::<Vec<_>>().join(", ")),
+    };
+    Failure::usage(format!("{what} {:?} is not known{hint}", tables::excerpt(name)))
 }
 
 /// A pool of that many threads, all processors if `None`.

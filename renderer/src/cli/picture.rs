@@ -4,7 +4,7 @@ use super::Failure;
 use super::args::PictureArgs;
 use super::output::println;
 use super::progress::{amount, duration, percent, size};
-use crate::film::{DiscLayer, Estimate, Picture, exr, png, tone};
+use crate::film::{Development, DiscLayer, Estimate, Picture, exr, png, tone};
 use crate::render::left_out::{LeftOut, Off};
 use crate::render::{Achieved, Head, Part, Rendering, Residual, Shard, Sky, State, Summary, Verdict, receipt};
 use crate::scene::Scene;
@@ -96,7 +96,8 @@ impl Product<'_> {
     ) -> Result<(), Failure> {
         let Self { scene, sky, summary, disc, rendering, head, verdict, achieved } = self;
         let picture = Picture { film: &rendering.film, disc, colour: sky.colour() };
-        let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(&picture));
+        let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(rendering.film.luminances()));
+        let development = Development::new(scene.tone, scene.white, sky.sun_white(), exposure_ev);
         let attributes = receipt::receipt(
             scene,
             sky,
@@ -107,7 +108,7 @@ impl Product<'_> {
         );
         let spectral = (args.spectral || scene.polarisation).then(|| scene.wavelengths());
         let exr = exr::encode(&picture, spectral.as_ref().map(Wavelengths::nm), &attributes).map_err(Failure::error)?;
-        let png = png::encode(&picture, exposure_ev).map_err(Failure::error)?;
+        let png = png::encode(&picture, &development).map_err(Failure::error)?;
         let polarisation = match png::encode_polarisation(&picture) {
             Some(png) => Some((files.polarisation(), png.map_err(Failure::error)?)),
             None => None,

@@ -122,8 +122,12 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
 
 /// The scene of the flags, laid over that of the file.
 pub(super) fn scene(args: &RenderArgs) -> Result<Scene, Failure> {
-    let base = args.scene.as_deref().map(|path| read_scene(path, &args.tables)).transpose()?;
-    let mut scene = args.scene(base.unwrap_or_default())?;
+    let base = match (&args.scene, &args.preset) {
+        (Some(path), _) => read_scene(path, &args.tables)?,
+        (None, Some(name)) => super::scene::preset(name)?,
+        (None, None) => Scene::default(),
+    };
+    let mut scene = args.scene(base)?;
     read_albedo(&mut scene, None)?;
     Ok(scene)
 }

@@ -5,9 +5,14 @@ use super::output::println;
 use super::render::{read_scene, sky};
 use super::{Failure, Outcome, unwritable};
 use crate::data::Data;
+use crate::gallery::{self, presets};
 use crate::scene::{Scene, schema};
 use std::io::Write;
 use std::path::Path;
+use tables::excerpt;
+
+/// The file of the schema.
+const SCHEMA: &str = "scene.schema.json";
 
 /// What a new file begins with.
 const HEAD: &str = "\
@@ -18,7 +23,13 @@ const HEAD: &str = "\
 
 pub(super) fn run(command: &SceneCommand) -> Result<Outcome, Failure> {
     match command {
-        SceneCommand::New { file } => new(file.as_deref()),
+        SceneCommand::New { list: true, .. } => {
+            presets().iter().for_each(|panel| println!("{:28} {}", panel.name, panel.line));
+            Ok(Outcome::Done)
+        }
+        SceneCommand::New { file, preset: name, .. } => {
+            new(file.as_deref(), &name.as_deref().map_or_else(|| Ok(Scene::default()), preset)?)
+        }
         SceneCommand::Check { scenes, data } => {
             let data = Data::load(data).map_err(Failure::error)?;
             scenes.iter().try_for_each(|path| check(path, &data)).map(|()| Outcome::Done)
@@ -36,8 +47,21 @@ pub(super) fn run(command: &SceneCommand) -> Result<Outcome, Failure> {
     }
 }
 
-fn new(file: Option<&Path>) -> Result<Outcome, Failure> {
-    let text = format!("{HEAD}{}", Scene::default().to_toml(true));
+/// The scene of a preset.
+pub(super) fn preset(name: &str) -> Result<Scene, Failure> {
+    gallery::preset(name).ok_or_else(|| {
+        let all = presets();
+        let near = tables::nearest(name, all.iter().map(|panel| panel.name.as_str()));
+        let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+        Failure::usage(format!("preset {:?} is not known{near} (airlight scene new --list)", excerpt(name)))
+    })
+}
+
+/// Writes a scene to a file that is not there yet. With the schema beside it, editors check and complete it (the directive of taplo).
+fn new(file: Option<&Path>, scene: &Scene) -> Result<Outcome, Failure> {
+    let beside = |path: &Path| path.with_file_name(SCHEMA).is_file();
+    let directive = if file.is_some_and(beside) { format!("#:schema {SCHEMA}\n") } else { String::new() };
+    let text = format!("{directive}{HEAD}{}", scene.to_toml(true));
     let Some(path) = file else {
         println!("{}", text.trim_end());
         return Ok(Outcome::Done);

@@ -7,7 +7,7 @@ use super::progress::{Line, duration, percent};
 use super::render::stop_on_interrupt;
 use super::{Failure, Outcome};
 use crate::data::Data;
-use crate::film::{Picture, exr, png};
+use crate::film::{Development, Picture, exr, png};
 use crate::render::{Control, End, Part, RenderError, Shard, Sky, Summary, disc_layer, receipt, render};
 use crate::scene::{Moment, Scene};
 use crate::sequence::{Course, Sequence, Track, steepest};
@@ -120,7 +120,10 @@ fn encode(
     let picture = Picture { film: &rendering.film, disc: &disc, colour: sky.colour() };
     let exposure_ev = scene.exposure_ev.unwrap_or_default();
     if has_extension(path, "png") {
-        return Ok(Some(png::encode(&picture, exposure_ev)?));
+        return Ok(Some(png::encode(
+            &picture,
+            &Development::new(scene.tone, scene.white, sky.sun_white(), exposure_ev),
+        )?));
     }
     let summary = Summary::new(sky, scene.seed, stop);
     let parts = [Part { seed: scene.seed, shard: Shard::default() }];

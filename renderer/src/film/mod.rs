@@ -9,12 +9,17 @@
 //! of each wavelength too.
 //! The solar disc is no sample; it is laid over the picture when it is written.
 
+mod develop;
 pub mod exr;
 pub mod png;
 mod raw;
 pub mod tone;
+pub(crate) mod white;
 
+pub use develop::Development;
 pub use raw::RawError;
+pub use tone::Tone;
+pub use white::{Adaptation, White};
 
 use crate::polarisation::Stokes;
 use crate::spectrum::{Colour, linear_srgb, luminance};
@@ -225,6 +230,17 @@ impl Film {
         self.estimate(pixel, self.channels() - 1)
     }
 
+    /// Number of pixels.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        self.counts.len()
+    }
+
+    /// Luminance of each pixel in cd/m^2.
+    pub fn luminances(&self) -> impl Iterator<Item = f64> {
+        (0..self.pixels()).map(|pixel| self.luminance(pixel).mean)
+    }
+
     /// How well the picture is known. Pixels outside the picture do not count, and neither
     /// do black ones in the medians.
     #[must_use]
@@ -321,6 +337,11 @@ impl Picture<'_> {
         let Some(factors) = self.disc.get(&pixel) else { return sky };
         let sun = linear_srgb(self.colour.xyz(factors));
         [sky[0] + sun[0], sky[1] + sun[1], sky[2] + sun[2]]
+    }
+
+    /// Linear sRGB of all pixels in cd/m^2, row by row, the disc included.
+    pub fn rgbs(&self) -> impl Iterator<Item = [f64; 3]> {
+        (0..self.film.pixels()).map(|pixel| self.rgb(pixel))
     }
 
     /// Spectral radiance in W m^-2 sr^-1 nm^-1 of a pixel at wavelength `index`, the disc included.

@@ -1,24 +1,20 @@
 //! The pictures to look at: eight-bit sRGB.
 
-use super::{EncodeError, Picture, tone};
+use super::{Development, EncodeError, Picture};
 use crate::polarisation::Stokes;
 
-/// A PNG file of the picture at an exposure value (see [`tone::white_cd_m2`]); black where it shows nothing.
+/// A PNG file of the picture, developed so; black where it shows nothing.
 ///
 /// # Errors
 /// [`EncodeError::Png`] if the library refuses.
-pub fn encode(picture: &Picture<'_>, exposure_ev: f64) -> Result<Vec<u8>, EncodeError> {
-    file(picture.film.size(), &pixels(picture, exposure_ev))
+pub fn encode(picture: &Picture<'_>, development: &Development) -> Result<Vec<u8>, EncodeError> {
+    file(picture.film.size(), &pixels(picture, development))
 }
 
 /// Its pixels, row by row, three bytes each.
 #[must_use]
-pub fn pixels(picture: &Picture<'_>, exposure_ev: f64) -> Vec<u8> {
-    let (width, height) = picture.film.size();
-    let white = tone::white_cd_m2(exposure_ev);
-    (0..width as usize * height as usize)
-        .flat_map(|pixel| tone::display(picture.rgb(pixel), white).map(tone::srgb_byte))
-        .collect()
+pub fn pixels(picture: &Picture<'_>, development: &Development) -> Vec<u8> {
+    development.bytes(picture.film.size().0, picture.rgbs())
 }
 
 /// From this degree of linear polarisation on the hue of its angle is shown in full; below it fades to black, for the angle of
@@ -33,14 +29,26 @@ pub fn encode_polarisation(picture: &Picture<'_>) -> Option<Result<Vec<u8>, Enco
     let (width, height) = picture.film.size();
     let stokes: Vec<Stokes> = (0..width as usize * height as usize).map_while(|pixel| picture.stokes(pixel)).collect();
     let rows = picture.film.keeps_stokes().then(|| stokes.chunks(width as usize))?;
-    let byte = |share: f64| (255.0 * share).round().clamp(0.0, 255.0) as u8;
-    let grey = |seen: &Stokes| [byte(seen.degree()); 3];
-    let hue = |seen: &Stokes| {
-        let strength = (seen.degree() / FULL_HUE).min(1.0);
-        hue(seen.angle_deg() / 180.0).map(|share| byte(share * strength))
-    };
-    let pixels: Vec<u8> = rows.flat_map(|row| row.iter().map(grey).chain(row.iter().map(hue))).flatten().collect();
+    let pixels = rows.flat_map(|row| row.iter().map(degree_bytes).chain(row.iter().map(angle_bytes)));
+    let pixels: Vec<u8> = pixels.flatten().collect();
     Some(file((2 * width, height), &pixels))
+}
+
+fn byte(share: f64) -> u8 {
+    (255.0 * share).round().clamp(0.0, 255.0) as u8
+}
+
+/// A pixel of the degree of polarisation, as [`encode_polarisation`] shows it.
+#[must_use]
+pub fn degree_bytes(seen: &Stokes) -> [u8; 3] {
+    [byte(seen.degree()); 3]
+}
+
+/// A pixel of the angle of polarisation, as [`encode_polarisation`] shows it.
+#[must_use]
+pub fn angle_bytes(seen: &Stokes) -> [u8; 3] {
+    let strength = (seen.degree() / FULL_HUE).min(1.0);
+    hue(seen.angle_deg() / 180.0).map(|share| byte(share * strength))
 }
 
 /// Red, green and blue, 0 to 1, of a hue: 0 red, 1/3 green, 2/3 blue, lines between.
@@ -70,7 +78,7 @@ pub fn file((width, height): (u32, u32), pixels: &[u8]) -> Result<Vec<u8>, Encod
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::{DiscLayer, Film};
+    use crate::film::{DiscLayer, Film, Tone, White};
     use crate::spectrum::{Colour, Wavelengths};
     use crate::test_data;
 
@@ -82,8 +90,9 @@ mod tests {
         let mut film = Film::new(2, 1, vec![1.0], false);
         film.rows_mut()[0].add(1, &[1.0], [100.0, 50.0, 25.0]);
         let picture = Picture { film: &film, disc: &DiscLayer::new(), colour: &colour };
-        let ev = (200.0_f64 / 1.2).log2();
-        assert_eq!(decoded(&encode(&picture, ev).expect("encodes")), [0, 0, 0, 188, 137, 99]);
+        let development = Development::new(Tone::Shoulder, White::D65, [1.0; 3], (200.0_f64 / 1.2).log2());
+        // 187.52, 136.96 and 99.09, rounded up from 0.49 on by the pixel's threshold.
+        assert_eq!(decoded(&encode(&picture, &development).expect("encodes")), [0, 0, 0, 188, 137, 99]);
         assert!(encode_polarisation(&picture).is_none());
     }
 

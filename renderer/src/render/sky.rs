@@ -355,6 +355,12 @@ impl Sky {
         &self.colour
     }
 
+    /// Colour of the sun above the air: XYZ of a radiance factor of 1.
+    #[must_use]
+    pub fn sun_white(&self) -> [f64; 3] {
+        self.fitted.as_ref().map_or(&self.colour, |fitted| &fitted.colour).white()
+    }
+
     /// The sun's spectral irradiance above the atmosphere in W m^-2 nm^-1; ones of a fitted sky.
     #[must_use]
     pub fn irradiance_w_m2_nm(&self) -> &[f64] {

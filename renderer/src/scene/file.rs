@@ -95,6 +95,7 @@ impl Scene {
     pub fn to_toml(&self, all: bool) -> String {
         let of = |scene: &Self| serde_json::to_value(scene).unwrap_or_default();
         let (own, usual) = (of(self), of(&Self::default()));
+        let left_out = left_out();
         let schema = schema::schema();
         let mut text = String::new();
         for key in schema::keys() {
@@ -112,7 +113,7 @@ impl Scene {
             for line in meaning.unwrap_or_default().lines().filter(|_| all) {
                 let _ = writeln!(text, "# {line}");
             }
-            let shown = value.map(ToString::to_string);
+            let shown = value.or_else(|| left_out.get(key)).map(ToString::to_string);
             let _ = match (shown, is_usual) {
                 (Some(value), false) => writeln!(text, "{key} = {value}"),
                 (Some(value), true) => writeln!(text, "# {key} = {value}"),
@@ -124,6 +125,23 @@ impl Scene {
         }
         text
     }
+}
+
+/// The defaults that files leave out, by key.
+fn left_out() -> serde_json::Value {
+    let usual = Scene::default();
+    serde_json::json!({
+        "sun_distance_au": usual.sun_distance_au,
+        "tables": usual.tables,
+        "colour": usual.colour,
+        "tone": usual.tone,
+        "white": usual.white,
+        "polarisation": usual.polarisation,
+        "follow_polarisation": usual.follow_polarisation,
+        "depolarisation": usual.depolarisation,
+        "sun_shape": usual.sun_shape,
+        "flat": usual.flat,
+    })
 }
 
 #[cfg(test)]
@@ -148,6 +166,22 @@ mod tests {
         }
         assert_eq!(Scene::default().to_toml(false), "");
         assert_eq!(Scene::from_toml("").expect("reads"), Scene::default());
+    }
+
+    #[test]
+    fn a_new_file_shows_every_default_that_there_is() {
+        let text = Scene::default().to_toml(true);
+        let schema = schema::schema().to_value();
+        for key in schema::keys() {
+            // What may be null is open: it depends on other keys.
+            let open = schema["properties"][key].to_string().contains("null");
+            let line = text.lines().find(|line| line.starts_with(&format!("# {key} ="))).expect(key);
+            assert_eq!(line.ends_with('='), open, "{line}");
+        }
+        let filled: String = text.lines().map(|line| format!("{}\n", line.trim_start_matches("# "))).collect();
+        let filled: String =
+            filled.lines().filter(|line| line.contains(" = ")).map(|line| format!("{line}\n")).collect();
+        assert_eq!(Scene::from_toml(&filled).expect("reads"), Scene::default(), "{filled}");
     }
 
     #[test]

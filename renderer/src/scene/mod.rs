@@ -21,6 +21,7 @@ pub use validate::SceneError;
 
 use crate::atmosphere::{Amount, Depolarisation, HazePhase, HazeSettings, OzoneSource};
 use crate::camera::{Camera, Projection, direction_at};
+use crate::film::{Tone, White};
 use crate::spectrum::{Scheme, Wavelengths};
 use crate::transport::{Fineness, Method};
 use glam::DVec3;
@@ -125,6 +126,13 @@ pub struct Scene {
     pub height: Option<u32>,
     /// Exposure of the PNG, EV at ISO 100, -30 to 30; automatic if not given.
     pub exposure_ev: Option<f64>,
+    /// Tone curve of the PNG.
+    #[serde(skip_serializing_if = "is_default")]
+    pub tone: Tone,
+    /// What the PNG shows as white: `d65` (colours as they are), `e`, `sun` (that above the air) or daylight of a colour temperature, 4000 to 25 000 K: `5500K`.
+    #[schemars(schema_with = "crate::film::white::schema")]
+    #[serde(skip_serializing_if = "is_default")]
+    pub white: White,
     /// Whether the picture keeps the Stokes parameters I, Q and U. Their frame: e1 horizontal, towards growing azimuth
     /// ([`Camera::level`]), e2 upwards.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -209,6 +217,8 @@ impl Default for Scene {
             width: None,
             height: None,
             exposure_ev: None,
+            tone: Tone::default(),
+            white: White::default(),
             polarisation: false,
             follow_polarisation: None,
             filter_deg: None,
@@ -261,14 +271,16 @@ impl Scene {
     }
 
     /// In what this scene and another differ so that their samples are not of one picture, if they do. Seed, samples,
-    /// error and exposure make no difference, blocks do; of own tables only the files can tell.
+    /// error, exposure, tone and white make no difference, blocks do; of own tables only the files can tell.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Option<String> {
         let [ours, theirs] = [self, other].map(|scene| {
             let (width, height) = scene.size();
             let (width, height, block) = (Some(width), Some(height), Some(scene.block()));
             let (spp, error, exposure_ev, tables) = (None, None, None, Vec::new());
-            let estimand = Self { width, height, block, seed: 0, spp, error, exposure_ev, tables, ..scene.clone() };
+            let (tone, white) = Default::default();
+            let estimand =
+                Self { width, height, block, seed: 0, spp, error, exposure_ev, tone, white, tables, ..scene.clone() };
             // As in `to_json`.
             serde_json::to_value(estimand).unwrap_or_default()
         });
@@ -458,7 +470,8 @@ mod tests {
     fn scenes_of_one_picture_may_differ_in_seed_and_effort() {
         let default = || Scene { method: Method::Paths, ..Scene::default() };
         let scene = default();
-        let other = Scene { seed: 7, error: Some(0.1), block: Some(4), width: Some(256), ..default() };
+        let (tone, white) = (Tone::Filmic, White::Sun);
+        let other = Scene { seed: 7, error: Some(0.1), block: Some(4), width: Some(256), tone, white, ..default() };
         assert_eq!(scene.difference(&other), None);
         let other = Scene { sun_elevation_deg: 29.0, ..default() };
         assert_eq!(scene.difference(&other).as_deref(), Some("sun_elevation_deg is 30.0 in one, 29.0 in the other"));
@@ -491,6 +504,8 @@ mod tests {
             "flat",
             "fineness",
             "follow_polarisation",
+            "tone",
+            "white",
         ];
         assert!(newer.iter().all(|key| !json.contains(key)), "an old scene reads as before");
     }

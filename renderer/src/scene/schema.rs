@@ -54,3 +54,16 @@ pub(super) fn wavelengths(_: &mut SchemaGenerator) -> Schema {
 pub(super) fn date(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": ["string", "null"], "format": "date-time" })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_file_of_the_schema_is_what_the_command_prints() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/scene.schema.json");
+        let printed = format!("{}\n", serde_json::to_string_pretty(&schema()).expect("a schema"));
+        let kept = std::fs::read_to_string(file).expect("scenes/scene.schema.json");
+        assert!(kept == printed, "airlight scene schema > scenes/scene.schema.json");
+    }
+}

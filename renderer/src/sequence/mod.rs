@@ -7,7 +7,7 @@ pub use course::{Course, Track};
 pub use exposure::{smooth, steepest};
 
 use crate::data::Data;
-use crate::film::{DiscLayer, Picture, tone};
+use crate::film::tone;
 use crate::render::{Control, RenderError, Sky, render};
 use crate::scene::Scene;
 use std::path::Path;
@@ -60,8 +60,7 @@ impl Sequence {
                 worst = Some((error, scene));
             }
             let rendering = render(scene, &sky, Control { stop, observe: &|_| {} })?;
-            let picture = Picture { film: &rendering.film, disc: &DiscLayer::new(), colour: sky.colour() };
-            automatic.push(tone::automatic_ev(&picture));
+            automatic.push(tone::automatic_ev(rendering.film.luminances()));
             seen((i + 1) as f64 / small.len() as f64);
         }
         let mut table_error = worst.map(|(error, _)| error);
@@ -74,6 +73,7 @@ impl Sequence {
         }
         for (frame, ev) in frames.iter_mut().zip(smooth(&automatic)) {
             frame.exposure_ev.get_or_insert(ev);
+            *frame = sky.decided(frame.clone());
         }
         Ok(Some(Self { frames, sky, solved, table_error }))
     }

@@ -1,7 +1,7 @@
 //! Skies from one solution: a strip of fisheyes with the sun from high to below the horizon, and the time of each.
 
 use crate::data::Data;
-use crate::film::{DiscLayer, Picture, png, tone};
+use crate::film::{Development, DiscLayer, Picture, png, tone};
 use crate::render::{Control, RenderError, Sky, render};
 use crate::scene::Scene;
 use std::sync::atomic::AtomicBool;
@@ -65,8 +65,9 @@ pub fn make(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Strip, Rende
         let rendering = render(&scene, &sky, Control { stop: &AtomicBool::new(false), observe: &|_| {} })?;
         let seconds = start.elapsed().as_secs_f64();
         let picture = Picture { film: &rendering.film, disc: &DiscLayer::new(), colour: sky.colour() };
-        let exposure = tone::automatic_ev(&picture);
-        for (y, row) in png::pixels(&picture, exposure).chunks_exact(3 * SIDE as usize).enumerate() {
+        let exposure = tone::automatic_ev(rendering.film.luminances());
+        let development = Development::new(scene.tone, scene.white, sky.sun_white(), exposure);
+        for (y, row) in png::pixels(&picture, &development).chunks_exact(3 * SIDE as usize).enumerate() {
             let first = 3 * (y * size.0 as usize + i * SIDE as usize);
             pixels[first..first + row.len()].copy_from_slice(row);
         }
