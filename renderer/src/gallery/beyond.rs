@@ -114,7 +114,7 @@ fn polarisation() -> Figure {
 
 fn rungs() -> Figure {
     let of = |(name, sun): (&str, f64), (what, colour): (&str, Scheme)| {
-        let scene = Scene { colour, ..fisheye(256, sun) };
+        let scene = Scene { colour, ..fisheye(192, sun) };
         panel(format!("{what}-{name}"), format!("{} wavelengths, the sun at {sun} degrees", colour.name()), scene)
     };
     let rows = [("day", 30.0), ("sunset", 0.0), ("dusk", -6.0)];
