@@ -10,6 +10,7 @@ pub mod convention;
 pub mod data;
 pub mod film;
 pub mod geometry;
+pub mod ground;
 pub mod light;
 pub mod phase;
 pub mod plan;
