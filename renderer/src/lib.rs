@@ -11,6 +11,7 @@ pub mod data;
 pub mod film;
 pub mod gallery;
 pub mod geometry;
+pub mod ground;
 pub mod light;
 pub mod phase;
 pub mod plan;

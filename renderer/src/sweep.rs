@@ -126,6 +126,7 @@ impl<const L: usize> World<L> {
 
     fn problem<'a>(&'a self, scene: &Scene, sun: Option<&'a SunDisc<L>>) -> Problem<'a, L> {
         Problem {
+            texture: None,
             shape: scene.sky.shape,
             medium: &self.medium,
             columns: &self.columns,

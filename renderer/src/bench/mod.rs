@@ -178,6 +178,7 @@ pub fn measure(
 ) -> Cost {
     let sun = SunDisc::beam(towards(case.sun_zenith_deg, 0.0));
     let problem = Problem {
+        texture: None,
         shape: Shape::Sphere { radius_m: RADIUS_M },
         medium,
         columns,

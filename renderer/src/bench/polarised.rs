@@ -66,6 +66,7 @@ pub fn measure<const L: usize>(medium: &Medium<L>, solved: &Solved<L>, sun_zenit
     let shape = SHAPE;
     let (columns, disc) = (Columns::new(medium, shape, Tolerance::RENDER), SunDisc::beam(towards(sun_zenith_deg, 0.0)));
     let problem = Problem {
+        texture: None,
         shape,
         medium,
         columns: &columns,

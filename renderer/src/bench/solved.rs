@@ -108,6 +108,7 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
         let sun = towards(sun_zenith_deg, 0.0);
         let disc = SunDisc::beam(sun);
         let problem = Problem {
+            texture: None,
             shape,
             medium: &medium,
             columns: &columns,

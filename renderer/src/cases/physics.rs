@@ -201,6 +201,7 @@ impl Estimand {
             Tables::Columns(estimator, columns) => (*estimator, columns),
         };
         let problem = Problem {
+            texture: None,
             shape: self.shape,
             medium: &self.medium,
             columns,

@@ -166,7 +166,7 @@ pub(super) struct RenderArgs {
     /// 2026-06-21T18:30:00+02:00, or Z for UTC
     #[arg(long, value_name = "INSTANT", conflicts_with_all = ["sun_elevation", "sun_azimuth", "sun_distance", "month"], help_heading = "Sun, air and ground")]
     pub date: Option<Moment>,
-    /// Longitude in degrees, east positive, -180 to 180, with --date
+    /// Longitude in degrees, east positive, -180 to 180, with --date or --albedo earth
     #[arg(long, value_name = "DEG", help_heading = "Sun, air and ground")]
     pub longitude: Option<f64>,
     /// Distance of the sun in astronomical units, 0.9 to 1.1 [default: 1]
@@ -200,7 +200,8 @@ pub(super) struct RenderArgs {
     /// Ozone profile: ml (McPeters-Labow, by month and latitude) or arosa (by month) [default: ml]
     #[arg(long, value_name = "SOURCE", help_heading = "Sun, air and ground")]
     pub ozone_source: Option<OzoneName>,
-    /// Reflectance of the ground: 0 to 1; dry-soil, wet-soil, ocean, or one of a --table; or a CSV file with the columns
+    /// Reflectance of the ground: 0 to 1; dry-soil, wet-soil, ocean, or one of a --table; earth, the map of the Earth, seen
+    /// from above --latitude and --longitude; or a CSV file with the columns
     /// wavelength_nm,albedo [default: 0.1]
     #[arg(long, value_name = "X|NAME|FILE.csv", help_heading = "Sun, air and ground")]
     pub albedo: Option<Albedo>,

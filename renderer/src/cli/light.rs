@@ -154,7 +154,7 @@ fn words(program: Program, scene: &Scene, sky: &Sky, summary: &Summary, map: &Pa
             "horizontal_illuminance_lux": summary.sun_lux,
         },
         "sky": { "horizontal_illuminance_lux": summary.sky_lux.mean },
-        "use": how(program, scene, (towards, irradiance, luminance(lux)), (&file, radius_deg)),
+        "use": how(program, scene, (towards, irradiance), (&file, radius_deg)),
     })
 }
 
@@ -162,7 +162,7 @@ fn words(program: Program, scene: &Scene, sky: &Sky, summary: &Summary, map: &Pa
 fn how(
     program: Program,
     scene: &Scene,
-    (towards, irradiance, lux): (DVec3, [f64; 3], f64),
+    (towards, irradiance): (DVec3, [f64; 3]),
     (file, radius_deg): (&str, f64),
 ) -> Value {
     let strongest = irradiance.into_iter().fold(0.0, f64::max);
@@ -194,6 +194,7 @@ fn how(
                 towards.x, towards.y, towards.z, irradiance[0], irradiance[1], irradiance[2]
             ),
         }),
+        // Its intensity times its colour, whose largest channel is 1, are the channels of the irradiance.
         // A directional light shines along its x: yaw about z from north (x) to east (y), pitch upwards.
         Program::Unreal => json!({
             "sky_light": "SLS Specified Cubemap of the map imported as a cubemap, Source Cubemap Angle 0, Intensity Scale 1",
@@ -203,7 +204,7 @@ fn how(
                     "yaw": (scene.sun_azimuth_deg + 180.0).rem_euclid(360.0),
                     "roll": 0.0,
                 },
-                "intensity_lux": lux,
+                "intensity_lux": strongest,
                 "light_color_linear": colour,
                 "source_angle_deg": 2.0 * radius_deg,
             },

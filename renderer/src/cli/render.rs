@@ -58,6 +58,12 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     if args.certify.is_some() && !sky.is_solved() {
         return Err(Failure::usage("--certify looks at solved tables: leave --method out"));
     }
+    if args.certify.is_some() && scene.has_texture() {
+        return Err(Failure::usage(
+            "--certify asks whether a table solves its equations, and these are of a uniform ground: beside the map of the Earth \
+             --method paths is exact",
+        ));
+    }
     if let Some((x, y)) = args.pixel {
         return print_sample(&scene, &sky, (x, y), args.sample);
     }

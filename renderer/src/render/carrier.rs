@@ -6,13 +6,16 @@ use super::sky::Shows;
 use crate::atmosphere::{Air, Columns, Medium, Tolerance};
 use crate::data::Data;
 use crate::geometry::{Place, Shape};
+use crate::ground::Texture;
 use crate::light::{SunDisc, solar_angular_radius_at};
 use crate::polarisation::{Frame, Stokes};
 use crate::sampling::Sampler;
 use crate::scene::{Scene, SceneError, SunShape};
 use crate::spectrum::{Packet, Wavelengths};
 use crate::transport::rungs::{Cheap, Stated};
-use crate::transport::{self, Certificate, Estimator, Method, Panorama, Problem, SolveError, Solved, Tables};
+use crate::transport::{
+    self, Certificate, Estimator, Method, Panorama, Problem, Resolution, SolveError, Solved, Tables,
+};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::path::Path;
@@ -64,6 +67,10 @@ impl Parts<'_> {
             .into());
         }
         let albedo = std::array::from_fn(|lane| self.albedo[packet.index(lane)]);
+        let texture = scene.has_texture().then(|| {
+            Texture::earth(scene.latitude_deg, scene.longitude_deg.unwrap_or(0.0), &nm).map_err(SceneError::Refused)
+        });
+        let texture = texture.transpose()?;
         let sun = match scene.sun_shape {
             SunShape::Disc => {
                 SunDisc::new(&self.data.sun, &nm, self.sun_direction, solar_angular_radius_at(scene.sun_distance_au))?
@@ -74,22 +81,31 @@ impl Parts<'_> {
             SunShape::Point => SunDisc::beam(self.sun_direction),
         };
         let means = match (scene.method.estimator(), scene.method) {
-            (Some(estimator), _) => Means::Estimated(estimator, Columns::new(&medium, shape, Tolerance::RENDER)),
+            (Some(estimator), _) => {
+                Means::Estimated(estimator, Box::new(Columns::new(&medium, shape, Tolerance::RENDER)))
+            }
             (None, Method::Solved) => {
                 let view = (self.place, self.sun_direction, self.wanted.judged.as_slice());
                 let sky = (&medium, shape, albedo, polarised);
                 let grids = match scene.fineness {
-                    None => Grids::Judged(Tables::within(scene.table_error, view, sky, self.kept)?),
-                    Some(fineness) => Grids::Alone(Solved::of(sky, &fineness.resolution(), self.kept)?),
+                    None => Grids::Judged(Box::new(Tables::within(scene.table_error, view, sky, self.kept)?)),
+                    Some(fineness) => Grids::Alone(Box::new(Solved::of(sky, &fineness.resolution(), self.kept)?)),
                 };
                 let asked = scene.table_error;
                 let (error, seen) = seen(&grids, asked, (self.place, &sun), self.wanted)?;
-                Means::Solved { grids, asked, error, seen }
+                let black = if texture.is_some() {
+                    let resolution = scene.fineness.map_or(Resolution::RENDER, |fineness| fineness.resolution());
+                    let black = Solved::of((&medium, shape, [0.0; L], polarised), &resolution, self.kept)?;
+                    Some(Black::new(black, (self.place, &sun), self.wanted)?)
+                } else {
+                    None
+                };
+                Means::Solved { grids, asked, error, seen, black }
             }
             (None, method) => Means::Cheap(Cheap::new(method, &medium, shape, albedo, scene.steps)),
         };
         let (max_orders, count) = (scene.orders, packet.range.len());
-        Ok(Box::new(Lanes { means, shape, medium, albedo, sun, polarised, max_orders, count }))
+        Ok(Box::new(Lanes { means, shape, medium, albedo, texture, sun, polarised, max_orders, count }))
     }
 }
 
@@ -97,9 +113,9 @@ impl Parts<'_> {
 #[derive(Debug)]
 enum Grids<const L: usize> {
     /// With a coarser one that tells their error.
-    Judged(Tables<L>),
+    Judged(Box<Tables<L>>),
     /// On a grid that was chosen, which states none.
-    Alone(Solved<L>),
+    Alone(Box<Solved<L>>),
 }
 
 impl<const L: usize> Grids<L> {
@@ -109,6 +125,47 @@ impl<const L: usize> Grids<L> {
             Self::Alone(solved) => solved,
         }
     }
+}
+
+/// The same air over black ground, for a ground that is not uniform.
+///
+/// Over uniform ground of the albedo a the radiance is L(a) = L(0) + D a / (1 - a s), where s is the share of the light from the ground that
+/// the air sends back to it: exactly so under a plane air. Two tables, L(0) and L(m) over the mean m of the map, say D; their irradiances
+/// E(m) = E(0) / (1 - m s) at the place say s. What is seen is L(a) with the albedo of the ground looked at, or of the ground below the
+/// point of the line that is nearest to it: light that the air has from the ground's neighbourhood is then that of ground like it.
+#[derive(Debug)]
+struct Black<const L: usize> {
+    grids: Grids<L>,
+    seen: Vec<Panorama<L>>,
+}
+
+impl<const L: usize> Black<L> {
+    fn new(solved: Solved<L>, view: (Place, &SunDisc<L>), wanted: &Wanted) -> Result<Self, SolveError> {
+        let mut black = Self { grids: Grids::Alone(Box::new(solved)), seen: Vec::new() };
+        black.turn(view, wanted)?;
+        Ok(black)
+    }
+
+    fn turn(&mut self, view: (Place, &SunDisc<L>), wanted: &Wanted) -> Result<(), SolveError> {
+        // As exactly as a panorama is made at all, for differences of two are multiplied.
+        (_, self.seen) = seen(&self.grids, SHOWN.0, view, wanted)?;
+        Ok(())
+    }
+}
+
+/// The ground where a line of sight ends, or below the point of it that is nearest to the ground.
+fn nearest_ground(shape: Shape, from: Place, direction: DVec3) -> Place {
+    let below = Place { altitude_m: 0.0, up: from.up };
+    let Shape::Sphere { radius_m } = shape else { return below };
+    // In radii of the planet: |p + t d| = 1, or least.
+    let start = from.up * (1.0 + from.altitude_m / radius_m);
+    let towards = -start.dot(direction);
+    if towards <= 0.0 {
+        return below;
+    }
+    let perigee = start + direction * towards;
+    let inside = (1.0 - perigee.length_squared()).max(0.0).sqrt();
+    Place { altitude_m: 0.0, up: (perigee - direction * inside).normalize() }
 }
 
 /// The error that tables state for an observer and a sun, and what is seen with each of the suns that stand for the disc, as exactly as
@@ -164,7 +221,7 @@ pub(super) trait Carrier: Debug + Send + Sync {
 /// How radiance is found, with the tables for it.
 #[derive(Debug)]
 enum Means<const L: usize> {
-    Estimated(Estimator, Columns<L>),
+    Estimated(Estimator, Box<Columns<L>>),
     /// With the error that was asked, the one stated for this observer and this sun, and what is seen with each of the suns that stand for
     /// the disc.
     Solved {
@@ -172,6 +229,8 @@ enum Means<const L: usize> {
         asked: f64,
         error: Option<f64>,
         seen: Vec<Panorama<L>>,
+        /// Over a ground that is not uniform.
+        black: Option<Black<L>>,
     },
     /// None behind a fitted sky, where only the sun is asked for.
     Cheap(Option<Cheap<L>>),
@@ -183,6 +242,7 @@ struct Lanes<const L: usize> {
     shape: Shape,
     medium: Medium<L>,
     albedo: [f64; L],
+    texture: Option<Texture<L>>,
     sun: SunDisc<L>,
     /// Whether light is followed with its polarisation.
     polarised: bool,
@@ -194,6 +254,7 @@ struct Lanes<const L: usize> {
 impl<const L: usize> Lanes<L> {
     fn problem<'a>(&'a self, columns: &'a Columns<L>) -> Problem<'a, L> {
         Problem {
+            texture: self.texture.as_ref(),
             shape: self.shape,
             medium: &self.medium,
             columns,
@@ -202,6 +263,23 @@ impl<const L: usize> Lanes<L> {
             environment: None,
             max_orders: self.max_orders,
         }
+    }
+
+    /// What counts of the two tables over the map of the Earth, if that is the ground: see [`Black`].
+    fn shares(&self, solved: &Solved<L>, black: &Black<L>, from: Place, look: (DVec3, DVec3)) -> [f64; L] {
+        let Some(texture) = &self.texture else { return [1.0; L] };
+        let (direction, sun) = look;
+        let foot = nearest_ground(self.shape, from, direction);
+        let albedo = texture.albedo(foot);
+        let (over_mean, over_black) =
+            (solved.ground_irradiance(foot, sun), black.grids.solved().ground_irradiance(foot, sun));
+        std::array::from_fn(|j| {
+            let mean = self.albedo[j];
+            let back =
+                if over_mean[j] > 0.0 { (1.0 - over_black[j] / over_mean[j]).clamp(0.0, 0.9) / mean } else { 0.0 };
+            let reflects = |albedo: f64| albedo / (1.0 - (albedo * back).min(0.9));
+            reflects(albedo[j]) / reflects(mean)
+        })
     }
 
     /// What a cheap method sees; nothing in a fitted sky, which is seen elsewhere.
@@ -214,10 +292,17 @@ impl<const L: usize> Carrier for Lanes<L> {
     fn radiance(&self, from: Place, direction: DVec3, sampler: &mut Sampler, factors: &mut [f64]) {
         let (estimator, columns) = match &self.means {
             Means::Estimated(estimator, columns) => (*estimator, columns),
-            Means::Solved { grids, seen, .. } => {
+            Means::Solved { grids, seen, black, .. } => {
                 factors.fill(0.0);
-                for sun in seen {
-                    let radiance = sun.radiance(grids.solved(), direction);
+                for (i, sun) in seen.iter().enumerate() {
+                    let mut radiance = sun.radiance(grids.solved(), direction);
+                    if let Some(black) = black {
+                        let shares = self.shares(grids.solved(), black, from, (direction, sun.sun()));
+                        let dark = black.seen[i].radiance(black.grids.solved(), direction);
+                        for j in 0..L {
+                            radiance[j] = dark[j] + shares[j] * (radiance[j] - dark[j]);
+                        }
+                    }
                     for (factor, radiance) in factors.iter_mut().zip(radiance) {
                         *factor += radiance / seen.len() as f64;
                     }
@@ -251,11 +336,21 @@ impl<const L: usize> Carrier for Lanes<L> {
             Means::Estimated(estimator, columns) => {
                 transport::stokes(*estimator, &self.problem(columns), from, direction, frame, sampler)
             }
-            Means::Solved { grids, seen, .. } => {
+            Means::Solved { grids, seen, black, .. } => {
                 let mut sum = [Stokes::default(); L];
-                for sun in seen {
-                    for (sum, one) in sum.iter_mut().zip(sun.stokes(grids.solved(), direction, frame)) {
-                        *sum += one * (seen.len() as f64).recip();
+                let weight = (seen.len() as f64).recip();
+                for (i, sun) in seen.iter().enumerate() {
+                    let mut shares = [1.0; L];
+                    if let Some(black) = black {
+                        shares = self.shares(grids.solved(), black, from, (direction, sun.sun()));
+                        let dark = black.seen[i].stokes(black.grids.solved(), direction, frame);
+                        for j in 0..L {
+                            sum[j] += dark[j] * (weight * (1.0 - shares[j]));
+                        }
+                    }
+                    let seen = sun.stokes(grids.solved(), direction, frame);
+                    for j in 0..L {
+                        sum[j] += seen[j] * (weight * shares[j]);
                     }
                 }
                 sum
@@ -306,8 +401,11 @@ impl<const L: usize> Carrier for Lanes<L> {
 
     fn turn(&mut self, from: Place, sun: DVec3, wanted: &Wanted) -> Result<(), SolveError> {
         self.sun.turn(sun);
-        if let Means::Solved { grids, asked, error, seen: panoramas } = &mut self.means {
+        if let Means::Solved { grids, asked, error, seen: panoramas, black } = &mut self.means {
             (*error, *panoramas) = seen(grids, *asked, (from, &self.sun), wanted)?;
+            if let Some(black) = black {
+                black.turn((from, &self.sun), wanted)?;
+            }
         }
         Ok(())
     }

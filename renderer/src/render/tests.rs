@@ -1,5 +1,6 @@
 //! Behaviour of whole pictures, on the tables of the repository.
 
+mod earth;
 mod polarised;
 mod rungs;
 

@@ -2,6 +2,7 @@
 
 use super::{Scene, SceneError};
 use crate::data::Data;
+use crate::ground::{self, EARTH};
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::str::FromStr;
@@ -13,7 +14,7 @@ use tables::{Axis, Curve, Scale, TableError, excerpt};
 pub enum Albedo {
     /// The same at every wavelength, 0 to 1.
     Grey(f64),
-    /// The spectrum of a ground of the data, by name; or a CSV file that is still to be read ([`Spectrum::from_csv`]).
+    /// The spectrum of a ground of the data, by name; [`EARTH`], the map of the Earth; or a CSV file that is still to be read ([`Spectrum::from_csv`]).
     Ground(String),
     /// A spectrum of one's own. Scenes keep its numbers, so that pictures can be made again without the file.
     Spectrum(Spectrum),
@@ -115,7 +116,13 @@ impl Scene {
         self.albedo_at(data, self.wavelengths().nm())
     }
 
-    /// Albedo of the ground at some wavelengths in nm.
+    /// Whether the ground is the map of the Earth.
+    #[must_use]
+    pub fn has_texture(&self) -> bool {
+        matches!(&self.albedo, Albedo::Ground(name) if name == EARTH)
+    }
+
+    /// Albedo of the ground at some wavelengths in nm; of the map of the Earth its mean over the sphere.
     ///
     /// # Errors
     /// [`SceneError::Unknown`] for a ground that the data do not have, [`SceneError::Ground`]
@@ -125,9 +132,12 @@ impl Scene {
         let own;
         let spectrum = match &self.albedo {
             Albedo::Grey(value) => return Ok(vec![*value; wavelengths_nm.len()]),
+            Albedo::Ground(name) if name == EARTH => {
+                return ground::mean_albedo(wavelengths_nm).map_err(SceneError::Refused);
+            }
             Albedo::Ground(name) => {
                 let grounds = &data.ground_albedo.spectra;
-                let known = || grounds.keys().map(String::as_str).collect::<Vec<_>>();
+                let known = || grounds.keys().map(String::as_str).chain([EARTH]).collect::<Vec<_>>();
                 grounds.get(name).ok_or_else(|| SceneError::unknown("albedo", name, known()))?
             }
             Albedo::Spectrum(spectrum) => {

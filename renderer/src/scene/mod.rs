@@ -64,7 +64,7 @@ pub struct Scene {
     #[schemars(schema_with = "schema::date")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub date: Option<Moment>,
-    /// Longitude in degrees, east positive, -180 to 180: with the date.
+    /// Longitude in degrees, east positive, -180 to 180: with the date, or with the map of the Earth (0 if not given).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub longitude_deg: Option<f64>,
     /// Whether the disc itself is drawn. The light is that of the disc either way.
@@ -99,7 +99,8 @@ pub struct Scene {
     /// Own tables by their paths: each replaces, for this picture, the one of its kind; grounds are added.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tables: Vec<String>,
-    /// Reflectance of the ground: a number, 0 to 1; the name of a ground; a CSV file (wavelength_nm,albedo); or its numbers,
+    /// Reflectance of the ground: a number, 0 to 1; the name of a ground; earth, the map of the
+    /// Earth, seen from above latitude and longitude; a CSV file (wavelength_nm,albedo); or its numbers,
     /// [[400.0, 0.02], [700.0, 0.3]].
     #[schemars(schema_with = "schema::albedo")]
     pub albedo: Albedo,

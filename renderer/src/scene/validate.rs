@@ -177,6 +177,9 @@ impl Scene {
         if self.flat && self.sun_elevation_deg <= 0.0 {
             return refuse("over a plane the sun stands above the horizon: its elevation must be above 0".into());
         }
+        if self.has_texture() && (self.flat || !matches!(self.method, Method::Solved | Method::Paths | Method::Judge)) {
+            return refuse("the map of the Earth lies on a sphere, for --method solved, paths or judge".into());
+        }
         if self.flat && self.in_space() {
             return refuse("over a plane there is no space to look from: the altitude must be below the top".into());
         }

@@ -8,7 +8,7 @@ use tables::units::KM;
 /// What a sequence shows.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Course {
-    /// The day of the scene's date at its place, from civil dawn to civil dusk, the sun [`DAWN_DEG`] below the horizon.
+    /// The day of the scene's date at its place, from civil dawn to civil dusk, the sun 6 degrees below the horizon.
     Day,
     /// The sun goes down, from 10 degrees above the horizon to 6 below: in even steps of elevation at the azimuth of the scene, or, if it
     /// has a date, as on its afternoon, in even steps of time.

@@ -215,6 +215,7 @@ pub fn make(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
         for (n, elevation) in SUNS.into_iter().enumerate() {
             let disc = SunDisc::beam(towards(90.0 - elevation, 0.0));
             let problem = Problem {
+                texture: None,
                 shape,
                 medium: &medium,
                 columns: &columns,

@@ -123,7 +123,8 @@ fn measure(
 ) -> [Off; QUANTITIES] {
     let disc = SunDisc::beam(towards(90.0 - sun, 0.0));
     let (sun, albedo) = (Some(&disc), [albedo; LANES]);
-    let problem = Problem { shape: SHAPE, medium, columns, albedo, sun, environment: None, max_orders: None };
+    let problem =
+        Problem { texture: None, shape: SHAPE, medium, columns, albedo, sun, environment: None, max_orders: None };
     View { problem, from: Place::above(altitude_m), colour }.measure()
 }
 

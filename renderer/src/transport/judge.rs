@@ -53,7 +53,7 @@ pub(super) fn trace<R: Radiation, const L: usize>(
             Outcome::Ground(t) => {
                 place = place.advance(problem.shape, direction, t);
                 place.altitude_m = 0.0;
-                carried.reflect(&problem.albedo);
+                carried.reflect(&problem.albedo_at(place));
                 if let Some((sun, light)) = sunlight(problem, place, &mut segments, sampler) {
                     let cosine = place.up.dot(sun).max(0.0);
                     carried.score(&mut sum, |j| FRAC_1_PI * cosine * light[j]);

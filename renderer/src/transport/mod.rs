@@ -22,6 +22,7 @@ mod solved;
 
 use crate::atmosphere::{Columns, Medium};
 use crate::geometry::{Place, Shape};
+use crate::ground::Texture;
 use crate::light::SunDisc;
 use crate::polarisation::{Frame, Stokes};
 use crate::sampling::{Sampler, spiral};
@@ -112,8 +113,10 @@ pub struct Problem<'a, const L: usize> {
     pub medium: &'a Medium<L>,
     /// Its columns.
     pub columns: &'a Columns<L>,
-    /// Lambertian albedo of the ground, 0 to 1.
+    /// Lambertian albedo of the ground, 0 to 1; of a ground with a texture its mean.
     pub albedo: [f64; L],
+    /// What the ground reflects at each of its places; `None` of a uniform one.
+    pub texture: Option<&'a Texture<L>>,
     /// The sun, above the atmosphere, in the frame of the observer; `None` for none.
     pub sun: Option<&'a SunDisc<L>>,
     /// Radiance that enters from every direction of space, per unit solar
@@ -122,6 +125,14 @@ pub struct Problem<'a, const L: usize> {
     /// The largest number of scatterings and reflections of a path, `None` for
     /// all. 1 is single scattering and light reflected by the ground straight to the eye.
     pub max_orders: Option<u32>,
+}
+
+impl<const L: usize> Problem<'_, L> {
+    /// Albedo of the ground at a place of it.
+    #[inline(always)]
+    pub(crate) fn albedo_at(&self, foot: Place) -> [f64; L] {
+        self.texture.map_or(self.albedo, |texture| texture.albedo(foot))
+    }
 }
 
 /// One unbiased estimate of the radiance per unit solar irradiance (sr^-1) that arrives at

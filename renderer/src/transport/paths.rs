@@ -71,8 +71,9 @@ pub(super) fn trace<R: Radiation, const L: usize>(
                 if cosine > 0.0
                     && let Some(through) = problem.columns.transmittance(ground, *sun)
                 {
+                    let albedo = problem.albedo_at(ground);
                     carried.score(&mut sum, |j| {
-                        (-total[j]).exp() * problem.albedo[j] * FRAC_1_PI * cosine * light[j] * through[j]
+                        (-total[j]).exp() * albedo[j] * FRAC_1_PI * cosine * light[j] * through[j]
                     });
                 }
             }
@@ -84,7 +85,7 @@ pub(super) fn trace<R: Radiation, const L: usize>(
             None => break,
             Some(Vertex::Ground) => {
                 place = chord.foot(place, direction);
-                carried.reflect(&problem.albedo);
+                carried.reflect(&problem.albedo_at(place));
                 direction = cosine_hemisphere(place.up, [angle, turn]);
             }
             Some(Vertex::Air(s)) => {

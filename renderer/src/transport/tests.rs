@@ -131,6 +131,7 @@ fn an_absorbing_atmosphere_dims_the_environment_by_beer_lambert() {
             .sum();
         for method in METHODS {
             let problem = Problem {
+                texture: None,
                 shape,
                 medium: &medium,
                 columns: &columns(&medium, shape),
@@ -168,6 +169,7 @@ fn a_conservative_atmosphere_over_white_ground_returns_the_environment() {
         for (altitude, zenith) in [(0.0, 20.0), (0.0, 87.0), (2e3, 130.0), (1e5, 150.0)] {
             for method in METHODS {
                 let problem = Problem {
+                    texture: None,
                     shape,
                     medium: &medium,
                     columns: &columns(&medium, shape),
@@ -260,6 +262,7 @@ fn one_order_of_scattering_is_the_integral_along_the_ray() {
             .sum();
         for method in METHODS {
             let problem = Problem {
+                texture: None,
                 shape: EARTH,
                 medium: &medium,
                 columns: &columns(&medium, EARTH),
@@ -287,6 +290,7 @@ fn light_of_a_black_sky_ground_is_lambert_times_two_transmittances() {
     let expected = 0.4 / PI * 0.5 * (-3e-3_f64).exp();
     for method in METHODS {
         let problem = Problem {
+            texture: None,
             shape: Shape::Flat,
             medium: &medium,
             columns: &columns(&medium, Shape::Flat),
@@ -307,6 +311,7 @@ fn methods_agree_at_every_wavelength_of_a_mixture() {
     let disc = SunDisc::beam(towards(70.0, 0.0));
     for (altitude, zenith, azimuth) in [(0.0, 30.0, 40.0), (0.0, 85.0, 180.0), (1e4, 100.0, 90.0), (4e5, 160.0, 0.0)] {
         let problem = Problem {
+            texture: None,
             shape: EARTH,
             medium: &medium,
             columns: &columns(&medium, EARTH),
@@ -334,6 +339,7 @@ fn wavelengths_carried_together_equal_wavelengths_alone() {
     let albedo = [0.8, 0.3, 0.1, 0.05];
     for method in METHODS {
         let problem = Problem {
+            texture: None,
             shape: EARTH,
             medium: &together,
             columns: &columns(&together, EARTH),
@@ -360,6 +366,7 @@ fn wavelengths_carried_together_equal_wavelengths_alone() {
                 .collect();
             let alone = medium(components, together.top_m());
             let problem = Problem {
+                texture: None,
                 shape: EARTH,
                 medium: &alone,
                 columns: &columns(&alone, EARTH),
@@ -379,6 +386,7 @@ fn an_empty_ray_gives_no_light() {
     let medium = mixed();
     let disc = SunDisc::beam(towards(30.0, 0.0));
     let problem = Problem {
+        texture: None,
         shape: EARTH,
         medium: &medium,
         columns: &columns(&medium, EARTH),

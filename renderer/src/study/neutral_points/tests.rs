@@ -33,7 +33,7 @@ fn with<T>(
     let columns = Columns::new(medium, shape, Tolerance::RENDER);
     let disc = SunDisc::beam(towards(90.0 - sun_elevation, 0.0));
     let (sun, albedo) = (Some(&disc), [0.0]);
-    work(&Problem { shape, medium, columns: &columns, albedo, sun, environment: None, max_orders })
+    work(&Problem { texture: None, shape, medium, columns: &columns, albedo, sun, environment: None, max_orders })
 }
 
 /// Four neighbours (mu, Q) about a zero of Q at the bottom of a layer of optical depth tau over black ground, the sun's cosine

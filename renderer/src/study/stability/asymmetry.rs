@@ -129,6 +129,7 @@ fn of_asymmetry(medium: &Medium<1>, g: f64, paths: (u64, u32)) -> Result<(Vec<Ce
     let columns = Columns::new(medium, SHAPE, Tolerance::RENDER);
     let disc = SunDisc::beam(sun);
     let problem = Problem {
+        texture: None,
         shape: SHAPE,
         medium,
         columns: &columns,

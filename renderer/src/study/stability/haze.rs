@@ -165,6 +165,7 @@ fn of_air(data: &Data, air: &Air, (depth, size): (f64, Size), suns: &[f64]) -> R
         }
         let disc = SunDisc::beam(sun);
         let problem = Problem {
+            texture: None,
             shape: SHAPE,
             medium,
             columns: &columns,

@@ -78,6 +78,12 @@ struct Nodes<const L: usize> {
 }
 
 impl<const L: usize> Panorama<L> {
+    /// Unit vector to the sun.
+    #[must_use]
+    pub fn sun(&self) -> DVec3 {
+        self.sun
+    }
+
     /// For an observer at `from` with the sun, a parallel beam, in the unit direction `sun`, off by about the share `error` of radiance at
     /// most; of the parts in which some of the directions `wanted` lie. In others it looks.
     #[must_use]

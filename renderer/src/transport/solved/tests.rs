@@ -94,6 +94,7 @@ fn the_path_tracer_agrees() {
     ] {
         let disc = SunDisc::beam(towards(sun_zenith, 0.0));
         let problem = Problem {
+            texture: None,
             shape: EARTH,
             medium: &medium,
             columns: &columns,
@@ -281,6 +282,7 @@ fn certified_radiance_does_not_depend_on_the_table() {
         {
             let sun = SunDisc::beam(towards(sun_zenith, 0.0));
             let problem = Problem {
+                texture: None,
                 shape: EARTH,
                 medium: &medium,
                 columns: &columns,
@@ -389,6 +391,7 @@ fn light_near_the_sun_is_scattered_in_the_peak_again() {
     let (columns, from, sun) = (columns(&medium, EARTH), Place::above(2.0), towards(40.0, 0.0));
     let beam = SunDisc::beam(sun);
     let problem = Problem {
+        texture: None,
         shape: EARTH,
         medium: &medium,
         columns: &columns,

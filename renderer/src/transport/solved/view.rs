@@ -197,6 +197,21 @@ impl<const L: usize> Solved<L> {
         seen
     }
 
+    /// Irradiance of the ground at a place of it, per unit solar irradiance.
+    #[must_use]
+    pub fn ground_irradiance(&self, foot: Place, sun: DVec3) -> [f64; L] {
+        let mut light = self.diffuse_irradiance(foot, sun);
+        let cosine = foot.up.dot(sun);
+        if cosine > 0.0
+            && let Some(arrives) = self.optics.columns.transmittance(foot, sun)
+        {
+            for j in 0..L {
+                light[j] += cosine * arrives[j];
+            }
+        }
+        light
+    }
+
     /// Irradiance of the ground at a place of it by all light but the sun's own.
     #[inline(always)]
     pub(super) fn diffuse_irradiance(&self, foot: Place, sun: DVec3) -> [f64; L] {

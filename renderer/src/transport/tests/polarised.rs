@@ -101,7 +101,16 @@ fn sunlit<'a, const L: usize>(
     albedo: f64,
     sun: &'a SunDisc<L>,
 ) -> Problem<'a, L> {
-    Problem { shape, medium, columns, albedo: [albedo; L], sun: Some(sun), environment: None, max_orders: None }
+    Problem {
+        texture: None,
+        shape,
+        medium,
+        columns,
+        albedo: [albedo; L],
+        sun: Some(sun),
+        environment: None,
+        max_orders: None,
+    }
 }
 
 #[test]
@@ -230,6 +239,7 @@ fn natural_light_from_everywhere_stays_natural() {
     for (shape, zenith) in [(EARTH, 87.0), (Shape::Flat, 50.0)] {
         let columns = columns(&medium, shape);
         let problem = Problem {
+            texture: None,
             shape,
             medium: &medium,
             columns: &columns,

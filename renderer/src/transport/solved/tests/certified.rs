@@ -45,6 +45,7 @@ fn certified_stokes_parameters_do_not_depend_on_the_table() {
         for (altitude, zenith, azimuth, sun_zenith) in views {
             let sun = SunDisc::beam(towards(sun_zenith, 0.0));
             let problem = Problem {
+                texture: None,
                 shape: EARTH,
                 medium: &medium,
                 columns: &columns,
