@@ -24,7 +24,7 @@ impl Development {
     /// The bytes of the pixels of a picture of that width, row by row, from linear sRGB in cd/m^2.
     ///
     /// Codes between two whole numbers are dithered, rounded up in as large a share of the pixels around as they lie above the lower one: a
-    /// twilight's slow gradient would else show steps. A code c becomes floor(c + t), t the pixel's [`threshold`], so that whole codes,
+    /// twilight's slow gradient would else show steps. A code c becomes floor(c + t), t the pixel's threshold, so that whole codes,
     /// black and white stay.
     #[must_use]
     pub fn bytes(&self, width: u32, rgb: impl IntoIterator<Item = [f64; 3]>) -> Vec<u8> {
