@@ -167,9 +167,9 @@ mod tests {
         {
             let [big_x, _, z] = White::Daylight(nominal * 1.4388 / 1.4380).xyz(SUN);
             let sum = big_x + 1.0 + z;
-            // The published ones have four decimals.
+            // The published ones have four decimals and rounded temperatures; that of D50 is off by 1.01e-4.
             assert!(
-                (big_x / sum - x).abs() < 1e-4 && (1.0 / sum - y).abs() < 1e-4,
+                (big_x / sum - x).abs() < 2e-4 && (1.0 / sum - y).abs() < 2e-4,
                 "{nominal}: {} {}",
                 big_x / sum,
                 1.0 / sum
