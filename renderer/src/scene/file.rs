@@ -137,7 +137,6 @@ fn left_out() -> serde_json::Value {
         "tone": usual.tone,
         "white": usual.white,
         "polarisation": usual.polarisation,
-        "follow_polarisation": usual.follow_polarisation,
         "depolarisation": usual.depolarisation,
         "sun_shape": usual.sun_shape,
         "flat": usual.flat,
