@@ -13,7 +13,9 @@ use tables::views::Biome;
 /// One wavelength and a small picture.
 fn small() -> Scene {
     let wavelengths_nm = Wavelengths::new(vec![500.0]).expect("one");
-    Scene { wavelengths_nm, width: Some(24), height: Some(24), ..Scene::default() }
+    // What is followed must not depend on the error that is asked.
+    let follow_polarisation = Some(false);
+    Scene { wavelengths_nm, width: Some(24), height: Some(24), follow_polarisation, ..Scene::default() }
 }
 
 fn sky(scene: &Scene) -> Result<Sky, RenderError> {
