@@ -84,7 +84,7 @@ pub fn judge(evidence: &Evidence, held_out: &Measured) -> (Vec<String>, Chart) {
             evidence.margin(metric)
         ));
         lines.push(
-            "  asked            met      cost over least (median, 90th percentile, at most 2; of all together)  rungs  by paths".into(),
+            "  asked            met      cost over least (median, 90th percentile, at most 2)  rungs  by paths".into(),
         );
         let mut rungs_of_all = BTreeSet::new();
         for asked in ASKED.map(|share| metric.unit(share)) {
@@ -95,18 +95,15 @@ pub fn judge(evidence: &Evidence, held_out: &Measured) -> (Vec<String>, Chart) {
             ratios.sort_by(f64::total_cmp);
             let at = |share: f64| ratios[((ratios.len() - 1) as f64 * share).round() as usize];
             let twice = ratios.iter().filter(|ratio| **ratio <= 2.0).count() as f64 / count;
-            let least: f64 = plans.iter().map(Planned::least_cost).sum();
-            let together = plans.iter().map(Planned::cost).sum::<f64>() / least;
             let rungs: BTreeSet<String> = plans.iter().map(Planned::name).collect();
             let paths = plans.iter().filter(|plan| plan.candidate.is_none()).count();
             lines.push(format!(
-                "  {:<15} {:>5.1} %  {:>6.2} {:>8.2} {:>7.0} % {:>15.2}                              {:>3} {:>8}",
+                "  {:<15} {:>5.1} %  {:>6.2} {:>8.2} {:>7.0} %                               {:>3} {:>8}",
                 metric.show(asked),
                 100.0 * met,
                 at(0.5),
                 at(0.9),
                 100.0 * twice,
-                together,
                 rungs.len(),
                 paths
             ));
