@@ -638,10 +638,12 @@ impl File {
             Ok(month @ 1..=12) => month,
             _ => return fail(air.line, format!("month is {}; 1 to 12 is possible", air.month)),
         };
+        // Rotations and differences of large numbers leave digits that the file never had: a millionth of a degree or a millimetre is kept.
+        let tidy = |x: f64| (1e6 * x).round() / 1e6 + 0.0;
         let scene = Scene {
-            altitude_km: altitude_km.max(0.0),
-            top_km,
-            sun_elevation_deg: height.clamp(-1.0, 1.0).asin().to_degrees(),
+            altitude_km: tidy(altitude_km.max(0.0)),
+            top_km: tidy(top_km),
+            sun_elevation_deg: tidy(height.clamp(-1.0, 1.0).asin().to_degrees()),
             sun_azimuth_deg: 180.0,
             sun_distance_au: distance_au,
             month,
@@ -651,9 +653,9 @@ impl File {
             depolarisation: if air.depolarised { Depolarisation::Measured } else { Depolarisation::None },
             albedo: Albedo::Grey(albedo),
             camera: sensor.kind,
-            fov_deg: Some(fov_deg),
-            view_azimuth_deg: Some(view_azimuth),
-            view_elevation_deg: Some(ahead.dot(up).clamp(-1.0, 1.0).asin().to_degrees()),
+            fov_deg: Some(tidy(fov_deg)),
+            view_azimuth_deg: Some(tidy(view_azimuth)),
+            view_elevation_deg: Some(tidy(ahead.dot(up).clamp(-1.0, 1.0).asin().to_degrees())),
             width: Some(width),
             height: Some(height_px),
             method: if few.is_some() { Method::Paths } else { Method::Solved },
