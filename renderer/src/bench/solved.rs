@@ -8,7 +8,7 @@ use crate::light::SunDisc;
 use crate::render::RenderError;
 use crate::sampling::Sampler;
 use crate::scene::Scene;
-use crate::transport::{self, Estimator, FINER, Panorama, Problem, Resolution, Solved};
+use crate::transport::{self, Estimator, FINER, Panorama, Problem, Resolution, Solved, befitting};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -18,9 +18,8 @@ use tables::views::Biome;
 /// Wavelengths, evenly over what is seen.
 const WAVELENGTHS: usize = 16;
 
-/// Pixels of the picture's width that is timed, and the error of its panorama.
+/// Pixels of the picture's width that is timed.
 const WIDTH: u32 = 320;
-const SHOWN: f64 = 2e-4;
 
 /// Zenith angles and azimuths of a dome that is made again and again, and how often.
 const DOME: (u32, u32) = (160, 32);
@@ -81,12 +80,13 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
     let from = Place::above(2.0);
     let camera = Scene { width: Some(WIDTH), height: Some(WIDTH), ..Scene::default() }.camera();
     let sun = towards(60.0, 0.0);
+    let shown = befitting(FINER * solved.difference(&coarse, from, sun));
     let picture = || {
         let start = Instant::now();
         let pixels = (0..WIDTH * WIDTH).map(|i| (f64::from(i % WIDTH) + 0.5, f64::from(i / WIDTH) + 0.5));
         let directions: Vec<_> = pixels.filter_map(|(x, y)| camera.direction(x, y)).collect();
         let wanted: Vec<_> = directions.iter().step_by(20).copied().collect();
-        let seen = Panorama::new(&solved, from, sun, SHOWN, &wanted);
+        let seen = Panorama::new(&solved, from, sun, shown, &wanted);
         std::hint::black_box(directions.iter().map(|direction| seen.radiance(&solved, *direction)[0]).sum::<f64>());
         (start.elapsed().as_secs_f64(), seen.looks())
     };
@@ -99,7 +99,7 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
     let start = Instant::now();
     for frame in 0..DOMES {
         let sun = towards(10.0 + 60.0 * f64::from(frame) / f64::from(DOMES), 0.0);
-        let seen = Panorama::new(&solved, from, sun, SHOWN, &dome);
+        let seen = Panorama::new(&solved, from, sun, shown, &dome);
         std::hint::black_box(dome.par_iter().map(|direction| seen.radiance(&solved, *direction)[0]).sum::<f64>());
     }
     let domes_per_second = f64::from(DOMES) / start.elapsed().as_secs_f64();

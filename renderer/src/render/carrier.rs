@@ -14,16 +14,12 @@ use crate::scene::{Scene, SceneError, SunShape};
 use crate::spectrum::{Packet, Wavelengths};
 use crate::transport::rungs::{Cheap, Stated};
 use crate::transport::{
-    self, Certificate, Estimator, Method, Panorama, Problem, Resolution, SolveError, Solved, Tables,
+    self, Certificate, Estimator, Method, Panorama, Problem, Resolution, SolveError, Solved, Tables, befitting,
 };
 use glam::DVec3;
 use std::fmt::Debug;
 use std::path::Path;
 use tables::units::EARTH_RADIUS_M;
-
-/// Error of a panorama in its worst direction: a share of what its table states (rms), within limits.
-const SHARE: f64 = 0.3;
-const SHOWN: (f64, f64) = (2e-4, 5e-3);
 
 /// Error that a solved table may state at most.
 pub(crate) const MOST_ERROR: f64 = 0.1;
@@ -148,7 +144,7 @@ impl<const L: usize> Black<L> {
 
     fn turn(&mut self, view: (Place, &SunDisc<L>), wanted: &Wanted) -> Result<(), SolveError> {
         // As exactly as a panorama is made at all, for differences of two are multiplied.
-        (_, self.seen) = seen(&self.grids, SHOWN.0, view, wanted)?;
+        (_, self.seen) = seen(&self.grids, 0.0, view, wanted)?;
         Ok(())
     }
 }
@@ -183,8 +179,7 @@ fn seen<const L: usize>(
     if let Some(error) = error.filter(|error| error.is_nan() || *error > MOST_ERROR) {
         return Err(SolveError::Inexact(error));
     }
-    let (least, most) = SHOWN;
-    let shown = (SHARE * error.unwrap_or(asked)).clamp(least, most);
+    let shown = befitting(error.unwrap_or(asked));
     let solved = grids.solved();
     let suns = solved.suns(place, sun).into_iter();
     Ok((error, suns.map(|sun| Panorama::new(solved, place, sun, shown, &wanted.shown)).collect()))

@@ -30,7 +30,8 @@ use glam::DVec3;
 pub use radiation::Pair;
 use radiation::{Both, Polarised, Radiation, Scalar};
 pub use solved::{
-    Certificate, Certified, FINER, Fan, Fineness, Panorama, Resolution, SolveError, Solved, Tables, covers_planet,
+    Certificate, Certified, FINER, Fan, Fineness, Panorama, Resolution, SolveError, Solved, Tables, befitting,
+    covers_planet,
 };
 
 use serde::{Deserialize, Serialize};

@@ -40,7 +40,7 @@ mod view;
 
 pub use certify::{Certificate, Certified, Fan};
 pub use grid::{Fineness, Resolution};
-pub use panorama::Panorama;
+pub use panorama::{Panorama, befitting};
 
 use super::directions;
 use crate::atmosphere::{Columns, Medium, MediumError, Tolerance};

@@ -40,6 +40,13 @@ const OFF: f64 = 1e-6;
 /// Most edges of layers that are heeded.
 const MOST_EDGES: usize = 24;
 
+/// The error in its worst direction that a panorama may have of a table that is off by `stated` (rms): a share of it, within limits.
+#[must_use]
+pub fn befitting(stated: f64) -> f64 {
+    const SHARE: f64 = 0.3;
+    (SHARE * stated).clamp(2e-4, 5e-3)
+}
+
 /// Radiance in all directions at a place with a sun.
 #[derive(Debug)]
 pub struct Panorama<const L: usize> {
