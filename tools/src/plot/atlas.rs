@@ -40,7 +40,8 @@ fn panel(
     };
     // The first term is on top.
     let upwards: Vec<&str> = terms.iter().rev().copied().collect();
-    let x = Axis::linear("", 0.0, regimes.len() as f64, 1.0).named(names(regimes, true));
+    let below: Vec<&str> = regimes.iter().map(|regime| short(regime)).collect();
+    let x = Axis::linear("", 0.0, regimes.len() as f64, 1.0).named(names(&below, true));
     let y = Axis::linear("", 0.0, terms.len() as f64, 1.0).named(names(&upwards, i == 0));
     let mut values = Vec::new();
     for (down, term) in upwards.iter().enumerate() {
@@ -54,6 +55,15 @@ fn panel(
     let scale = Axis::logarithmic("% or CIEDE2000", SCALE.0, SCALE.1, 1);
     let cells = Cells { bar: i + 1 == PANELS.len(), ..Cells::new(scale, values) };
     Panel { cells: Some(cells), ..Panel::new(x, y, Vec::new()).titled(title).key(Key::None) }
+}
+
+/// The word for a regime that goes below a column.
+fn short(regime: &str) -> &str {
+    match regime {
+        "low sun" => "low",
+        "twilight" => "dusk",
+        other => other,
+    }
 }
 
 /// The median; no number of none. What is nothing is shown as the least of the scale.
