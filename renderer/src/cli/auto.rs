@@ -22,10 +22,7 @@ pub(super) fn run(args: &RenderArgs, scene: &Scene, begin: Instant) -> Result<Ou
     let files = Files::new(&args.files.output, None)?;
     let data = Data::load(&args.files.data).map_err(Failure::error)?;
     let pool = super::pool(args.threads)?;
-    let folder = args.keep_tables.as_deref();
-    if let Some(folder) = folder {
-        std::fs::create_dir_all(folder).map_err(|error| super::unwritable(folder, &error))?;
-    }
+    let folder = super::made(args.keep_tables.as_deref())?;
     let stop = stop_on_interrupt();
     let mut plan = pool.install(|| super::plan::plan(scene, &data, args, asked))?;
     loop {

@@ -1,6 +1,5 @@
 //! `airlight bench`.
 
-use super::args::{BenchArgs, BenchMethod, BenchName};
 use super::output::println;
 use super::{Failure, Outcome};
 use crate::atmosphere::{Columns, Medium};
@@ -9,9 +8,79 @@ use crate::data::Data;
 use crate::sampling::POINTS;
 use crate::scene::SceneError;
 use crate::transport::Estimator;
-use crate::vectors::take_at_most;
+use crate::vectors::{Vectors, take_at_most};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
 use std::time::Instant;
 use tables::views::Biome;
+
+/// Flags of `airlight bench`.
+#[derive(Debug, Args)]
+pub(super) struct BenchArgs {
+    /// What to measure
+    #[arg(value_name = "WHAT")]
+    pub what: BenchName,
+    /// Estimator of the anchors [default: paths and certified]
+    #[arg(long, value_name = "METHOD")]
+    pub method: Option<BenchMethod>,
+    /// Paths in each direction beside solved tables, or of polarised and of scalar transfer
+    #[arg(long, value_name = "N", default_value_t = 8192)]
+    pub paths: u64,
+    /// Folder with the tables
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
+    /// Biomes beside which solved tables are put, or in which polarised transfer or certificates are measured: one, none or all
+    #[arg(long, value_name = "NAME", default_value = "all")]
+    pub biome: String,
+    /// Least time for each direction in seconds
+    #[arg(long, value_name = "S", default_value_t = 1.0)]
+    pub seconds: f64,
+    /// Widest vectors that are taken (of x86-64)
+    #[arg(long, value_name = "KIND", default_value = "widest")]
+    pub vectors: VectorsName,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum VectorsName {
+    /// 128 bits: what every processor has
+    Plain,
+    /// 256 bits
+    Avx2,
+    /// What this processor has
+    Widest,
+}
+
+impl From<VectorsName> for Vectors {
+    fn from(name: VectorsName) -> Self {
+        match name {
+            VectorsName::Plain => Self::Plain,
+            VectorsName::Avx2 => Self::Avx2,
+            VectorsName::Widest => Self::Widest,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum BenchMethod {
+    /// Paths on column tables
+    Paths,
+    /// The brute-force judge
+    Judge,
+    /// Certificates: fans of rays that end in a solved table, unbiased
+    Certified,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum BenchName {
+    /// Four skies (450, 680 and 550 nm by day, 450 nm in twilight)
+    Anchors,
+    /// Solved tables of clear air and of every biome beside the path tracer
+    Solved,
+    /// Polarised beside scalar transfer in clear air and in every biome
+    Polarised,
+    /// Certificates of polarised light beside those of radiance alone in clear air and in every biome
+    Certificates,
+}
 
 pub(super) fn run(args: &BenchArgs) -> Result<Outcome, Failure> {
     take_at_most(args.vectors.into());

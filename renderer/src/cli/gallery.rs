@@ -47,9 +47,8 @@ pub(super) fn run(args: &GalleryArgs) -> Result<Outcome, Failure> {
         wanted.iter().for_each(|figure| println!("{:15} {}{}", figure.name, figure.caption, counterpart(figure)));
         return Ok(Outcome::Done);
     }
-    for folder in [Some(args.output.as_path()), args.keep_tables.as_deref()].into_iter().flatten() {
-        std::fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))?;
-    }
+    super::made(Some(&args.output))?;
+    super::made(args.keep_tables.as_deref())?;
     let data = Data::load(&args.data).map_err(Failure::error)?;
     let pool = super::pool(args.threads)?;
     let (stop, begin) = (stop_on_interrupt(), Instant::now());

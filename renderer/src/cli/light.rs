@@ -37,10 +37,7 @@ pub(super) fn run(args: &LightArgs) -> Result<Outcome, Failure> {
     let (scene, files) = (scene(args)?, super::picture::Files::new(&args.render.files.output, None)?);
     let data = Data::load(&args.render.files.data).map_err(Failure::error)?;
     let pool = super::pool(args.render.threads)?;
-    let folder = args.render.keep_tables.as_deref();
-    if let Some(folder) = folder {
-        std::fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))?;
-    }
+    let folder = super::made(args.render.keep_tables.as_deref())?;
     let stop = stop_on_interrupt();
     let sky = pool.install(|| sky(&scene, &data, folder))?;
     let scene = sky.decided(scene);

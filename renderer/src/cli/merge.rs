@@ -1,14 +1,32 @@
 //! `airlight merge`.
 
-use super::args::MergeArgs;
+use super::args::PictureArgs;
 use super::picture::{Files, Product, has_extension, read_state};
 use super::render::{sky, stop_on_interrupt};
 use super::{Failure, Outcome};
 use crate::data::Data;
 use crate::film::Film;
 use crate::render::{End, Head, Merged, Rendering, Summary, disc_layer};
+use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
+
+/// Flags of `airlight merge`.
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub(super) struct MergeArgs {
+    /// States of runs (--checkpoint, --shard), or their pictures with the states beside them (sky.exr: sky.state)
+    #[arg(value_name = "STATE", required = true)]
+    pub states: Vec<PathBuf>,
+    #[command(flatten)]
+    pub files: PictureArgs,
+    /// Write the state of the whole too, to be merged with more
+    #[arg(long, value_name = "FILE", help_heading = "Files")]
+    pub checkpoint: Option<PathBuf>,
+    /// Threads, 1 to 1024; the picture does not depend on it [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Files")]
+    pub threads: Option<u16>,
+}
 
 pub(super) fn run(args: &MergeArgs) -> Result<Outcome, Failure> {
     let begin = Instant::now();

@@ -34,7 +34,7 @@ enum Command {
     Render(Box<args::RenderArgs>),
     /// Say how a picture is made cheapest within an error, by stored measurements: method, wavelengths, what is left out and why that may be.
     /// Takes the flags of render
-    Plan(Box<args::PlanArgs>),
+    Plan(Box<plan::PlanArgs>),
     /// Render a day, a sunset, an ascent or any course of sun, observer and camera as numbered frames without flicker, from tables that
     /// are solved once. Takes the flags of render
     Sequence(Box<sequence::SequenceArgs>),
@@ -42,19 +42,19 @@ enum Command {
     Light(Box<light::LightArgs>),
     /// Write, check and show scene files
     #[command(subcommand)]
-    Scene(args::SceneCommand),
+    Scene(scene::SceneCommand),
     /// Render the figures of the gallery: the counterparts of those of the thesis, and others
     Gallery(gallery::GalleryArgs),
     /// Put runs with different seeds or shards together as one picture
-    Merge(args::MergeArgs),
+    Merge(merge::MergeArgs),
     /// Answer a file of reference cases: radiances with their standard errors
-    Radiance(args::RadianceArgs),
+    Radiance(radiance::RadianceArgs),
     /// Measure what a direction and a picture cost on skies that other renderers were timed on
-    Bench(args::BenchArgs),
+    Bench(bench::BenchArgs),
     /// Compute how errors go with size and cost: CSV, which airlight-tools chart draws
-    Study(args::StudyArgs),
+    Study(study::StudyArgs),
     /// Trace paths through scenes drawn at random, and report any that is not finite, negative or endless
-    Sweep(args::SweepArgs),
+    Sweep(sweep::SweepArgs),
 }
 
 /// What a command ends in, short of an error.
@@ -114,6 +114,14 @@ pub fn main() -> ExitCode {
 /// A file that cannot be written.
 fn unwritable(path: &std::path::Path, error: &std::io::Error) -> Failure {
     Failure::error(format!("{}: cannot be written: {error}", path.display()))
+}
+
+/// The folder, made if it is named and not there.
+fn made(folder: Option<&std::path::Path>) -> Result<Option<&std::path::Path>, Failure> {
+    if let Some(folder) = folder {
+        std::fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))?;
+    }
+    Ok(folder)
 }
 
 /// A name that nothing has, with the nearest known one, or all of them.

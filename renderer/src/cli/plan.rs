@@ -1,6 +1,6 @@
 //! `airlight plan`.
 
-use super::args::{PlanArgs, RenderArgs};
+use super::args::RenderArgs;
 use super::output::println;
 use super::progress::amount;
 use super::{Failure, Outcome};
@@ -10,6 +10,17 @@ use crate::render::Sky;
 use crate::scene::Scene;
 use crate::transport::Method;
 use crate::transport::rungs::Rung;
+use clap::Args;
+
+/// Flags of `airlight plan`.
+#[derive(Debug, Args)]
+pub(super) struct PlanArgs {
+    #[command(flatten)]
+    pub render: RenderArgs,
+    /// Write the plan as JSON
+    #[arg(long)]
+    pub json: bool,
+}
 
 pub(super) fn run(args: &PlanArgs) -> Result<Outcome, Failure> {
     let Some(asked) = args.render.error else {

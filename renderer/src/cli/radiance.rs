@@ -1,11 +1,45 @@
 //! `airlight radiance`.
 
-use super::args::RadianceArgs;
 use super::output::println;
 use super::progress::{Line, duration};
+use super::words::{MethodName, TierName, share};
 use super::{Failure, Outcome};
 use crate::cases::{self, Effort, Refusal, Report, Settings};
+use clap::Args;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Flags of `airlight radiance`.
+#[derive(Debug, Args)]
+pub(super) struct RadianceArgs {
+    /// Cases: JSON; those whose `polarization` is `vector` get polarised transfer
+    #[arg(value_name = "CASES.json")]
+    pub cases: PathBuf,
+    /// Answers to write: CSV with id,value,stderr
+    #[arg(short, long, value_name = "ANSWERS.csv")]
+    pub output: PathBuf,
+    /// Which cases
+    #[arg(long, default_value = "core")]
+    pub tier: TierName,
+    /// Solved tables, paths on column tables, or the brute-force judge
+    #[arg(long, value_name = "METHOD", default_value = "paths")]
+    pub method: MethodName,
+    /// Standard error of each case relative to its value (of Q and U to I), 1e-5 to 1: 1% or 0.01 [default: 1%]
+    #[arg(long, value_name = "E", value_parser = share, conflicts_with = "spp")]
+    pub error: Option<f64>,
+    /// Paths for each case instead, 2 or more
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..))]
+    pub spp: Option<u64>,
+    /// Seed of the random numbers, 0 to 2^64 - 1
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub seed: u64,
+    /// Threads, 1 to 1024; the answers do not depend on it [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Say nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
+}
 
 pub(super) fn run(args: &RadianceArgs) -> Result<Outcome, Failure> {
     let suite = cases::read(&args.cases).map_err(Failure::error)?;

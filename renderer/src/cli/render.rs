@@ -39,6 +39,12 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     if args.files.spectral && scene.method.is_dome() {
         return Err(Failure::usage("a fitted sky has no spectrum: leave out --spectral"));
     }
+    if args.certify.is_some() && scene.has_texture() {
+        return Err(Failure::usage(
+            "--certify asks whether a table solves its equations, and these are of a uniform ground: beside the map of the Earth \
+             --method paths is exact",
+        ));
+    }
     let deadline = args.time.and_then(|time| begin.checked_add(time));
     let part = match kept.as_ref().map(|state| state.head.parts.as_slice()) {
         Some([part]) => *part,
@@ -48,21 +54,12 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     let files = Files::new(&args.files.output, checkpoint(args).as_deref())?;
     let data = Data::load(&args.files.data).map_err(Failure::error)?;
     let pool = super::pool(args.threads)?;
-    let folder = args.keep_tables.as_deref();
-    if let Some(folder) = folder {
-        std::fs::create_dir_all(folder).map_err(|error| super::unwritable(folder, &error))?;
-    }
+    let folder = super::made(args.keep_tables.as_deref())?;
     let sky = pool.install(|| sky(&scene, &data, folder))?;
     // The picture says what was decided for it.
     let scene = sky.decided(scene);
     if args.certify.is_some() && !sky.is_solved() {
         return Err(Failure::usage("--certify looks at solved tables: leave --method out"));
-    }
-    if args.certify.is_some() && scene.has_texture() {
-        return Err(Failure::usage(
-            "--certify asks whether a table solves its equations, and these are of a uniform ground: beside the map of the Earth \
-             --method paths is exact",
-        ));
     }
     if let Some((x, y)) = args.pixel {
         return print_sample(&scene, &sky, (x, y), args.sample);
@@ -155,12 +152,17 @@ fn read_albedo(scene: &mut Scene, file: Option<&Path>) -> Result<(), Failure> {
 
 /// The scene turned into something that answers.
 pub(super) fn sky(scene: &Scene, data: &Data, kept: Option<&Path>) -> Result<Sky, Failure> {
-    Sky::kept(scene, data, kept).map_err(|error| match error {
+    Sky::kept(scene, data, kept).map_err(failure)
+}
+
+/// What cannot be rendered as asked is the asker's, all else the run's.
+pub(super) fn failure(error: RenderError) -> Failure {
+    match error {
         RenderError::Scene(error) => error.into(),
         RenderError::Air(error) => Failure::usage(error),
         RenderError::Refused(error) => Failure::usage(error),
         other => Failure::error(other),
-    })
+    }
 }
 
 /// The scene of a run that goes on: that of its state, but for what decides when it ends and how it is looked at.

@@ -1,15 +1,55 @@
 //! `airlight scene`.
 
-use super::args::SceneCommand;
 use super::output::println;
 use super::render::{read_scene, sky};
 use super::{Failure, Outcome, unwritable};
 use crate::data::Data;
 use crate::gallery::{self, presets};
 use crate::scene::{Scene, schema};
+use clap::Subcommand;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tables::excerpt;
+
+/// What `airlight scene` does.
+#[derive(Debug, Subcommand)]
+pub(super) enum SceneCommand {
+    /// Write a scene file with every key, its meaning, unit, range and default, to be filled in
+    New {
+        /// File to write, which must not be there; standard output if none is given
+        #[arg(value_name = "FILE.toml")]
+        file: Option<PathBuf>,
+        /// Begin with a scene of the gallery
+        #[arg(long, value_name = "NAME")]
+        preset: Option<String>,
+        /// List the presets, a line each, and write nothing
+        #[arg(long, conflicts_with_all = ["file", "preset"])]
+        list: bool,
+    },
+    /// Say whether scene files can be rendered, and with which tables
+    Check {
+        /// Scenes: TOML, JSON, or the EXR files of pictures
+        #[arg(value_name = "SCENE", required = true)]
+        scenes: Vec<PathBuf>,
+        /// Folder with the tables
+        #[arg(long, value_name = "DIR", default_value = "data")]
+        data: PathBuf,
+    },
+    /// Show a scene, or that of a picture, as TOML: the keys that are not at their defaults
+    Show {
+        /// Scene: TOML, JSON, or the EXR file of a picture
+        #[arg(value_name = "SCENE")]
+        scene: PathBuf,
+        /// Every key, with its meaning
+        #[arg(long)]
+        all: bool,
+        /// As JSON
+        #[arg(long, conflicts_with = "all")]
+        json: bool,
+    },
+    /// Print the JSON schema of scene files, for editors
+    Schema,
+}
 
 /// The file of the schema.
 const SCHEMA: &str = "scene.schema.json";

@@ -4,7 +4,7 @@ use super::args::RenderArgs;
 use super::output::{eprintln, println};
 use super::picture::has_extension;
 use super::progress::{Line, duration, percent};
-use super::render::stop_on_interrupt;
+use super::render::{failure, stop_on_interrupt};
 use super::{Failure, Outcome};
 use crate::data::Data;
 use crate::film::{Development, Picture, exr, png};
@@ -65,10 +65,7 @@ pub(super) fn run(args: &SequenceArgs) -> Result<Outcome, Failure> {
     let names = Names::new(&args.render.files.output)?;
     let data = Data::load(&args.render.files.data).map_err(Failure::error)?;
     let pool = super::pool(args.render.threads)?;
-    let folder = args.render.keep_tables.as_deref();
-    if let Some(folder) = folder {
-        std::fs::create_dir_all(folder).map_err(|error| super::unwritable(folder, &error))?;
-    }
+    let folder = super::made(args.render.keep_tables.as_deref())?;
     let stop = stop_on_interrupt();
     let line = Line::new(args.render.files.quiet);
     let look = |share: f64| line.show(share, |_| "exposures".into());
@@ -130,15 +127,6 @@ fn encode(
     let attributes = receipt::receipt(scene, sky, &parts, &rendering, (&summary, exposure_ev), (None, None));
     let wavelengths = (args.render.files.spectral || scene.polarisation).then(|| scene.wavelengths());
     Ok(Some(exr::encode(&picture, wavelengths.as_ref().map(|all| all.nm()), &attributes)?))
-}
-
-fn failure(error: RenderError) -> Failure {
-    match error {
-        RenderError::Scene(error) => error.into(),
-        RenderError::Air(error) => Failure::usage(error),
-        RenderError::Refused(error) => Failure::usage(error),
-        other => Failure::error(other),
-    }
 }
 
 fn interrupted(index: usize, names: &Names) -> Outcome {

@@ -1,6 +1,5 @@
 //! `airlight study`.
 
-use super::args::{StudyArgs, StudyName};
 use super::output::{eprintln, println};
 use super::progress::{Line, duration};
 use super::{Failure, Outcome};
@@ -10,7 +9,89 @@ use crate::plan::{Evidence, Measured};
 use crate::render::RenderError;
 use crate::study::ladder::Size;
 use crate::study::{self, Chart, plans};
+use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
+
+/// Flags of `airlight study`.
+#[derive(Debug, Args)]
+pub(super) struct StudyArgs {
+    /// What to study
+    #[arg(value_name = "WHAT")]
+    pub what: StudyName,
+    /// Of the ladder 18 scenes and the main settings alone, in some five minutes; of stability fewer cells, in one or two; of plans and
+    /// held-out the first ten atmospheres
+    #[arg(long)]
+    pub quick: bool,
+    /// Go on with plans or held-out where the study was stopped: atmospheres that are in the file stay
+    #[arg(long)]
+    pub resume: bool,
+    /// CSV to write, or PNG [default: plots/airlight-WHAT.csv, or .png]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Where `polarisation`, `atlas`, `plans` and `held-out` store their measurements, which the program is built with
+    /// [default: renderer/measured/WHAT.csv]
+    #[arg(long, value_name = "FILE")]
+    pub measured: Option<PathBuf>,
+    /// Folder with the tables
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
+    /// Threads, 1 to 1024 [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Say nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum StudyName {
+    /// Column tables: transmittance and single scattering against size, beside the maps of others
+    Columns,
+    /// Solved tables of clear air and the nine biomes: error over the sun's elevation, by certificates
+    SolvedSuns,
+    /// As solved-suns, by day, of polarised light: errors of I, Q and U relative to I
+    PolarisedSuns,
+    /// Solved tables: error against the time to solve, for grids, moments and orders
+    SolvedGrids,
+    /// Every method: error against cost over 60 scenes, from day to twilight, from the ground to space (an hour on two cores)
+    Ladder,
+    /// Where each method leaves its error bound: maps over sun and haze, altitude and view, asymmetry, radius, wavelength, steps, mappings
+    Stability,
+    /// Skies from one solution, the sun from 60 to -12 degrees, with the time of each: a strip of fisheyes (PNG)
+    Strip,
+    /// Where clear skies have no polarisation over the sun's elevation: the points of Arago, Babinet and Brewster
+    NeutralPoints,
+    /// What plans are made from: errors and costs of every rung on 280 scenes (15 core-minutes; each atmosphere is stored when it is done)
+    Plans,
+    /// The same of 102 other scenes, by which plans are judged (10 core-minutes)
+    HeldOut,
+    /// How good plans are: those of the held-out scenes beside what is true, by what is stored
+    Planner,
+    /// What leaving out each part of the model changes, on thirty scenes (6 core-minutes)
+    Atlas,
+    /// What leaving polarisation out costs over the sun's elevation, in clear air and the nine biomes: scalar beside polarised radiance
+    Polarisation,
+}
+
+impl StudyName {
+    pub(super) fn as_str(self) -> &'static str {
+        match self {
+            Self::Columns => "columns",
+            Self::Ladder => "ladder",
+            Self::SolvedSuns => "solved-suns",
+            Self::PolarisedSuns => "polarised-suns",
+            Self::SolvedGrids => "solved-grids",
+            Self::Stability => "stability",
+            Self::Strip => "strip",
+            Self::Plans => "plans",
+            Self::HeldOut => "held-out",
+            Self::Planner => "planner",
+            Self::Atlas => "atlas",
+            Self::NeutralPoints => "neutral-points",
+            Self::Polarisation => "polarisation",
+        }
+    }
+}
 
 /// Makes a chart from the data; hears of progress.
 type MakeChart = fn(&Data, &(dyn Fn(f64) + Sync)) -> Result<Chart, RenderError>;

@@ -1,11 +1,35 @@
 //! `airlight sweep`.
 
-use super::args::SweepArgs;
 use super::output::println;
 use super::progress::{Line, amount, duration};
+use super::words::{EstimatorName, count};
 use super::{Failure, Outcome};
-use crate::sweep::{Bad, Departure, Fault, LAW, Plan, Report, Scene, Traced, laws};
+use crate::sweep::{Bad, Departure, Fault, LAW, PATHS, Plan, Report, Scene, Traced, laws};
 use crate::transport::Estimator;
+use clap::Args;
+
+/// Flags of `airlight sweep`.
+#[derive(Debug, Args)]
+pub(super) struct SweepArgs {
+    /// Number of paths, 1 to 1e15; 1024 for each scene
+    #[arg(long, value_name = "N", value_parser = count, default_value = "1e6")]
+    pub paths: u64,
+    /// Seed of scenes and paths, 0 to 2^64 - 1
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub seed: u64,
+    /// Estimator
+    #[arg(long, value_name = "METHOD", default_value = "paths")]
+    pub method: EstimatorName,
+    /// Threads, 1 to 1024; the findings do not depend on it [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Trace one path of this scene instead, and say what the scene is
+    #[arg(long, value_name = "N", requires = "path")]
+    pub scene: Option<u64>,
+    /// Which path
+    #[arg(long, value_name = "K", requires = "scene", value_parser = clap::value_parser!(u64).range(..PATHS))]
+    pub path: Option<u64>,
+}
 
 /// Skies under which the laws are checked.
 const SKIES: u64 = 16;

@@ -31,6 +31,7 @@ pub fn outside(scene: &Scene, traits: &Traits) -> Option<String> {
         (scene.humidity_percent.is_some(), "another humidity than the type's own".into()),
         (scene.orders.is_some(), "some orders alone".into()),
         (scene.flat, "a planet that is a plane".into()),
+        (scene.has_texture(), "a ground that is a map".into()),
         (scene.depolarisation != Depolarisation::default(), "air without depolarisation".into()),
         (scene.sun_shape != SunShape::Disc, "a sun of another form".into()),
         (scene.colour != Scheme::Spectral, "colours of a few wavelengths' own".into()),
