@@ -107,7 +107,9 @@ impl Course {
     /// longer than two days; else as [`Scene::validate`].
     pub fn frames(&self, scene: &Scene, count: usize) -> Result<Vec<Scene>, SceneError> {
         let share = |i: usize| if count > 1 { i as f64 / (count - 1) as f64 } else { 0.0 };
-        let mut frames = vec![Scene { date: None, longitude_deg: None, ..scene.clone() }; count];
+        // Without a date a longitude says of the map alone where one is.
+        let longitude_deg = scene.longitude_deg.filter(|_| scene.has_texture());
+        let mut frames = vec![Scene { date: None, longitude_deg, ..scene.clone() }; count];
         let span = match (self, scene.date) {
             (Self::Day, _) => Some(day(&Path::of(scene, "a day")?)?),
             (Self::Sunset, Some(_)) => Some(evening(&Path::of(scene, "a sunset")?)?),
@@ -251,6 +253,16 @@ mod tests {
         let polar = Scene { latitude_deg: 85.0, longitude_deg: Some(0.0), ..vienna() };
         let winter = Scene { date: "2026-12-21T12:00:00Z".parse().ok(), ..polar };
         assert!(Course::Day.frames(&winter, 3).expect_err("night").to_string().contains("stays at"));
+    }
+
+    #[test]
+    fn the_map_stays_below_the_observer() {
+        let albedo = crate::scene::Albedo::Ground("earth".into());
+        let earth = Scene { albedo, longitude_deg: Some(-20.0), ..Scene::default() };
+        let frames = Course::Ascent.frames(&earth, 3).expect("an ascent");
+        assert!(frames.iter().all(|frame| frame.longitude_deg == Some(-20.0)));
+        let dated = Course::Day.frames(&vienna(), 3).expect("a day");
+        assert!(dated.iter().all(|frame| frame.longitude_deg.is_none()), "the sun stands in the frames");
     }
 
     #[test]

@@ -3,8 +3,8 @@
 //! Both sides of a difference are found by one method without noise: usual tables, the isotropic closure where planes are asked for; or by the same paths,
 //! where orders of scattering are counted.
 
+use super::directions;
 use super::ladder::Regime;
-use super::plans::directions;
 use crate::atmosphere::{Depolarisation, Haze, HazePhase};
 use crate::data::Data;
 use crate::film::tone;

@@ -10,7 +10,55 @@ pub mod solved;
 pub mod stability;
 pub mod strip;
 
+use crate::render::RenderError;
+use crate::sampling::spiral;
+use crate::scene::Scene;
+use glam::{DMat3, DVec3};
 use std::fmt::Write;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use tables::units::{EARTH_RADIUS_M, KM};
+
+/// Where one looks: above the horizon from the ground, all around from within the air, at the planet and its air from space; even in solid angle, all turned
+/// by so many radians about the vertical.
+fn directions(scene: &Scene, (count, turn): (u32, f64)) -> Vec<DVec3> {
+    let top = EARTH_RADIUS_M + scene.top_km * KM;
+    let sine = top / (EARTH_RADIUS_M + scene.altitude_km * KM);
+    let heights = match scene.altitude_km {
+        _ if sine < 1.0 => [-1.0, -((1.0 - sine) * (1.0 + sine)).sqrt()],
+        altitude if altitude > 1.0 => [-1.0, 1.0],
+        _ => [0.0, 1.0],
+    };
+    (0..count).map(|i| DMat3::from_rotation_z(turn) * spiral(i, count, heights)).collect()
+}
+
+/// Hands 0 to `count` to `work`, `threads` at a time, each in a pool of one thread, so that every time is that of one core.
+///
+/// # Errors
+/// The first that `work` has.
+fn on_one_core_each(
+    count: usize,
+    threads: usize,
+    work: &(dyn Fn(usize) -> Result<(), RenderError> + Sync),
+) -> Result<(), RenderError> {
+    let next = AtomicUsize::new(0);
+    let worker = || -> Result<(), RenderError> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+        loop {
+            let i = next.fetch_add(1, Ordering::Relaxed);
+            if i >= count {
+                return Ok(());
+            }
+            pool.install(|| work(i))?;
+        }
+    };
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(worker)).collect();
+        workers.into_iter().try_for_each(|worker| match worker.join() {
+            Ok(result) => result,
+            Err(panic) => std::panic::resume_unwind(panic),
+        })
+    })
+}
 
 /// Points of curves in panels.
 #[derive(Debug, Clone, PartialEq)]

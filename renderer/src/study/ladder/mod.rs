@@ -180,28 +180,17 @@ fn median(mut values: Vec<f64>) -> f64 {
 pub fn make(data: &Data, size: Size, threads: usize, progress: &(dyn Fn(f64) + Sync)) -> Result<Ladder, RenderError> {
     let (air, settings) = (atmospheres(size), settings(size));
     let total = air.iter().map(|air| air.scenes.len() * (settings.len() + 1)).sum::<usize>() as f64;
-    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let done = AtomicUsize::new(0);
     let rows: Mutex<Vec<(usize, Vec<Row>)>> = Mutex::new(Vec::new());
-    let work = || -> Result<(), RenderError> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-        loop {
-            let i = next.fetch_add(1, Ordering::Relaxed);
-            let Some(atmosphere) = air.get(i) else { return Ok(()) };
-            let step = || {
-                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                progress(done as f64 / total);
-            };
-            let made = pool.install(|| one(data, size, atmosphere, &settings, &step))?;
-            // A thread that panicked takes the study with it.
-            rows.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((i, made));
-        }
-    };
-    std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(work)).collect();
-        workers.into_iter().try_for_each(|worker| match worker.join() {
-            Ok(result) => result,
-            Err(panic) => std::panic::resume_unwind(panic),
-        })
+    super::on_one_core_each(air.len(), threads, &|i| {
+        let step = || {
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            progress(done as f64 / total);
+        };
+        let made = one(data, size, &air[i], &settings, &step)?;
+        // A thread that panicked takes the study with it.
+        rows.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((i, made));
+        Ok(())
     })?;
     let mut rows = rows.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     rows.sort_by_key(|(i, _)| *i);

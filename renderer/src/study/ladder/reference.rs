@@ -6,9 +6,9 @@ use crate::data::Data;
 use crate::geometry::{Place, Shape};
 use crate::light::{SunDisc, solar_angular_radius};
 use crate::render::{RenderError, Sky};
-use crate::sampling::spiral;
 use crate::scene::Scene;
 use crate::spectrum::{Colour, Wavelengths};
+use crate::study::directions;
 use crate::transport::{FINER, Method, Resolution, Solved};
 use glam::DVec3;
 use std::ops::Range;
@@ -95,7 +95,7 @@ impl Reference {
     pub(super) fn seen(&self, data: &Data, scene: &Scene) -> Result<Right, RenderError> {
         let wavelengths = Wavelengths::visible(WAVELENGTHS).unwrap_or_default();
         let colour = Colour::new(&data.sun, &data.observer, &wavelengths)?;
-        let directions = directions(scene);
+        let directions = directions(scene, (DIRECTIONS, 0.0));
         let radiances = self.radiances(data, scene, &directions)?;
         let colours = radiances.iter().map(|factors| colour.xyz(factors)).collect();
         let (camera, (width, height)) = (scene.camera(), scene.size());
@@ -107,16 +107,4 @@ impl Reference {
         let error = FINER * self.packets[0].2.difference(&self.coarser, place, sun);
         Ok(Right { directions, radiances, colours, pixels, error })
     }
-}
-
-/// Where one looks: above the horizon from the ground, all around from within the air, at the planet and its air from space.
-fn directions(scene: &Scene) -> Vec<DVec3> {
-    let top = EARTH_RADIUS_M + scene.top_km * KM;
-    let sine = top / (EARTH_RADIUS_M + scene.altitude_km * KM);
-    let heights = match scene.altitude_km {
-        _ if sine < 1.0 => [-1.0, -((1.0 - sine) * (1.0 + sine)).sqrt()],
-        altitude if altitude > 1.0 => [-1.0, 1.0],
-        _ => [0.0, 1.0],
-    };
-    (0..DIRECTIONS).map(|i| spiral(i, DIRECTIONS, heights)).collect()
 }

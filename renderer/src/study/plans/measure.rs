@@ -11,12 +11,12 @@ use crate::data::Data;
 use crate::film::tone;
 use crate::plan::{Candidate, Costs, NODES, Row, SPECTRUM, Spectrum, TRANSFERS, Traits, Transfer};
 use crate::render::{RenderError, Sky};
-use crate::sampling::{Sampler, spiral};
+use crate::sampling::Sampler;
 use crate::scene::Scene;
 use crate::spectrum::{Colour, Wavelengths, between, ciede2000};
+use crate::study::directions;
 use crate::transport::{Fineness, Method};
-use glam::{DMat3, DVec3};
-use tables::units::{EARTH_RADIUS_M, KM};
+use glam::DVec3;
 
 /// Radiance factors in sr^-1: of each direction, at each wavelength.
 type Factors = Vec<Vec<f64>>;
@@ -26,18 +26,6 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let before = thread_s();
     let made = work();
     (made, thread_s() - before)
-}
-
-/// Where one looks: above the horizon from the ground, all around from within the air, at the planet and its air from space; even in solid angle.
-pub(in crate::study) fn directions(scene: &Scene, (count, turn): (u32, f64)) -> Vec<DVec3> {
-    let top = EARTH_RADIUS_M + scene.top_km * KM;
-    let sine = top / (EARTH_RADIUS_M + scene.altitude_km * KM);
-    let heights = match scene.altitude_km {
-        _ if sine < 1.0 => [-1.0, -((1.0 - sine) * (1.0 + sine)).sqrt()],
-        altitude if altitude > 1.0 => [-1.0, 1.0],
-        _ => [0.0, 1.0],
-    };
-    (0..count).map(|i| DMat3::from_rotation_z(turn) * spiral(i, count, heights)).collect()
 }
 
 /// For how long looks are timed, and how many at most.

@@ -6,7 +6,6 @@ mod measure;
 mod scenes;
 
 pub use judge::judge;
-pub(super) use measure::directions;
 pub use scenes::{Set, atmosphere};
 
 use crate::data::Data;
@@ -14,7 +13,6 @@ use crate::plan::{Measured, Row};
 use crate::render::RenderError;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Measures the first `atmospheres` of a set, but for those that are `known`, with that many threads, each with atmospheres of its own, so that every time is
 /// that of one core. Hands `keep` what there is after each atmosphere.
@@ -29,38 +27,24 @@ pub fn measure(
     keep: &(dyn Fn(&Measured) + Sync),
 ) -> Result<Measured, RenderError> {
     let finished: BTreeSet<usize> = known.rows.iter().map(|row| row.atmosphere).collect();
-    let (next, rows) = (AtomicUsize::new(0), Mutex::new(known.rows));
+    let rows = Mutex::new(known.rows);
     let done = Mutex::new(vec![0.0; atmospheres]);
-    let work = || -> Result<(), RenderError> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= atmospheres {
-                return Ok(());
-            }
-            if finished.contains(&number) {
-                continue;
-            }
-            let step = |share: f64| {
-                let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                done[number] = share;
-                progress(done.iter().sum::<f64>() / atmospheres as f64);
-            };
-            let scenes = atmosphere(set, number);
-            let made = pool.install(|| measure::measure(data, set, number, &scenes, &step))?;
-            // A thread that panicked takes the study with it.
-            let mut rows = rows.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            rows.extend(made);
-            rows.sort_by_key(|row| row.atmosphere);
-            keep(&with_margins(rows.clone())?);
+    super::on_one_core_each(atmospheres, threads, &|number| {
+        if finished.contains(&number) {
+            return Ok(());
         }
-    };
-    std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(work)).collect();
-        workers.into_iter().try_for_each(|worker| match worker.join() {
-            Ok(result) => result,
-            Err(panic) => std::panic::resume_unwind(panic),
-        })
+        let step = |share: f64| {
+            let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            done[number] = share;
+            progress(done.iter().sum::<f64>() / atmospheres as f64);
+        };
+        let made = measure::measure(data, set, number, &atmosphere(set, number), &step)?;
+        // A thread that panicked takes the study with it.
+        let mut rows = rows.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        rows.extend(made);
+        rows.sort_by_key(|row| row.atmosphere);
+        keep(&with_margins(rows.clone())?);
+        Ok(())
     })?;
     let rows = rows.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     with_margins(rows)
