@@ -63,7 +63,10 @@ fn plan<'a>(evidence: &Evidence, row: &'a Row, prediction: &'a Prediction, metri
     Planned { row, metric, asked, candidate, prediction, margin }
 }
 
-/// What judged plans say, for people, and the points of a chart: true over predicted error of every plan.
+/// The least share of an error that is shown.
+const LEAST: f64 = 1e-2;
+
+/// What judged plans say, for people, and the points of a chart: in how many scenes the true error is so many times the asked one or more.
 #[must_use]
 pub fn judge(evidence: &Evidence, held_out: &Measured) -> (Vec<String>, Chart) {
     let predictions: Vec<Prediction> = held_out.rows.iter().map(|row| evidence.predict(&row.traits)).collect();
@@ -87,7 +90,8 @@ pub fn judge(evidence: &Evidence, held_out: &Measured) -> (Vec<String>, Chart) {
             "  asked            met      cost over least (median, 90th percentile, at most 2)  rungs  by paths".into(),
         );
         let mut rungs_of_all = BTreeSet::new();
-        for asked in ASKED.map(|share| metric.unit(share)) {
+        for level in ASKED {
+            let asked = metric.unit(level);
             let plans = of(metric, asked);
             let count = plans.len() as f64;
             let met = plans.iter().filter(|plan| plan.true_error() <= asked).count() as f64 / count;
@@ -108,10 +112,12 @@ pub fn judge(evidence: &Evidence, held_out: &Measured) -> (Vec<String>, Chart) {
                 paths
             ));
             rungs_of_all.extend(rungs);
-            points.extend(plans.iter().filter(|plan| plan.candidate.is_some()).map(|plan| Point {
+            let mut shares: Vec<f64> = plans.iter().map(|plan| plan.true_error() / asked).collect();
+            shares.sort_by(|a, b| b.total_cmp(a));
+            points.extend((1..).zip(shares).map(|(k, share)| Point {
                 panel: metric.name(),
-                curve: format!("asked {}", metric.show(asked)),
-                at: [plan.predicted()[1], plan.true_error().max(1e-6)],
+                curve: format!("asked {} % (colour: units)", 100.0 * level),
+                at: [share.max(LEAST), 100.0 * f64::from(k) / count],
             }));
         }
         lines.push(format!("  rungs: {}", rungs_of_all.into_iter().collect::<Vec<_>>().join(", ")));
@@ -121,8 +127,8 @@ pub fn judge(evidence: &Evidence, held_out: &Measured) -> (Vec<String>, Chart) {
         let k = i * held_out.rows.len() / TWENTY;
         plan(evidence, &held_out.rows[k], &predictions[k], metric, metric.unit(asked))
     }));
-    let axes = ["predicted error with margin", "true error"];
-    (lines, Chart { title: "Plans: true error over predicted, on scenes kept apart".into(), axes, points })
+    let axes = ["true error over the asked one", "scenes with as much or more / %"];
+    (lines, Chart { title: "Plans for scenes kept apart: how often errors are met".into(), axes, points })
 }
 
 /// Scenes of the table.
