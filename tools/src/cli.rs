@@ -9,6 +9,7 @@ mod import;
 mod lint;
 mod mie;
 mod output;
+mod place;
 
 use clap::{Args, Parser, Subcommand};
 use std::io::Write;
@@ -36,7 +37,7 @@ enum Command {
     Inspect(files::InspectArgs),
     /// Number densities, cross-sections, coefficients, optical depths and phase functions of the air over a place
     Coefficients(coefficients::CoefficientsArgs),
-    /// Write a table as CSV, JSON or Parquet
+    /// Write a table as CSV, JSON or Parquet; or the air over a place for Mitsuba, pbrt, Blender, Unreal or Bevy
     Export(files::ExportArgs),
     /// Citations and licences of everything that the tables and figures are made from
     Sources(files::SourcesArgs),

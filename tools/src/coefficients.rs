@@ -267,7 +267,11 @@ fn title(request: &Request) -> String {
     format!("The air over one place: {}", names.join(", "))
 }
 
-fn settings(column: &Column, place: &Place) -> Result<Vec<(String, String)>, TableError> {
+/// What the air over a place is, as pairs of name and value: month, latitude, ozone in Dobson units, aerosol and its humidities.
+///
+/// # Errors
+/// [`TableError`] if a table does not reach.
+pub fn settings(column: &Column, place: &Place) -> Result<Vec<(String, String)>, TableError> {
     let mut settings = vec![
         ("month".into(), place.month.to_string()),
         ("latitude".into(), format!("{} degrees north", shortest(place.latitude_deg))),

@@ -28,6 +28,7 @@ pub mod own;
 #[cfg(feature = "plot")]
 pub mod plot;
 pub mod profile;
+pub mod programs;
 pub mod raw;
 pub mod records;
 pub mod sheet;

@@ -2,11 +2,9 @@
 
 use super::files::OutputArgs;
 use super::output;
+use super::place::PlaceArgs;
 use clap::Args;
-use std::path::PathBuf;
-use tables::views::{AerosolSource, Biome};
 use tools::coefficients::{self, Quantity, Request};
-use tools::column::Place;
 use tools::data::Data;
 use tools::numbers::Numbers;
 use tools::sheet::Format;
@@ -31,33 +29,10 @@ pub(super) struct CoefficientsArgs {
     /// [default: all]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     species: Vec<String>,
-    /// Kind of aerosol, in its own amount
-    #[arg(long, value_name = "NAME", default_value = NONE, value_parser = biome_names())]
-    biome: String,
-    /// Where its optics come from [default: opac]
-    #[arg(long, value_name = "NAME", value_parser = AerosolSource::ALL.map(AerosolSource::name))]
-    aerosol_source: Option<String>,
-    /// Relative humidity in percent of the aerosol that takes up water, 0 to 99 [default: 80 in the boundary layer]
-    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
-    humidity: Option<f64>,
-    /// Month, 1 to 12, which ozone goes by
-    #[arg(long, value_name = "1..12", default_value_t = Place::default().month, value_parser = clap::value_parser!(u8).range(1..=12))]
-    month: u8,
-    /// Latitude in degrees, north positive, -90 to 90, which ozone goes by
-    #[arg(long, value_name = "DEG", default_value_t = Place::default().latitude_deg, allow_negative_numbers = true)]
-    latitude: f64,
-    /// Folder of the tables
-    #[arg(long, value_name = "DIR", default_value = "data")]
-    data: PathBuf,
+    #[command(flatten)]
+    place: PlaceArgs,
     #[command(flatten)]
     output: OutputArgs,
-}
-
-/// What stands for no aerosol.
-const NONE: &str = "none";
-
-fn biome_names() -> clap::builder::PossibleValuesParser {
-    Biome::ALL.map(Biome::name).into_iter().chain([NONE]).collect::<Vec<_>>().into()
 }
 
 fn quantity_names() -> clap::builder::PossibleValuesParser {
@@ -66,23 +41,7 @@ fn quantity_names() -> clap::builder::PossibleValuesParser {
 
 /// Writes what is asked for.
 pub(super) fn write(args: &CoefficientsArgs) -> Result<(), String> {
-    let biome = Biome::from_name(&args.biome);
-    if let (None, Some(flag)) = (
-        biome,
-        [("--aerosol-source", args.aerosol_source.is_some()), ("--humidity", args.humidity.is_some())]
-            .into_iter()
-            .find_map(|(flag, given)| given.then_some(flag)),
-    ) {
-        return Err(format!("{flag} says something of an aerosol: name its --biome too"));
-    }
-    let source = args.aerosol_source.as_deref().and_then(AerosolSource::from_name);
-    let place = Place {
-        month: args.month,
-        latitude_deg: args.latitude,
-        biome,
-        source: source.unwrap_or(Place::default().source),
-        humidity_percent: args.humidity,
-    };
+    let place = args.place.place()?;
     let quantities = match (&args.quantity[..], &args.angle) {
         ([], Some(_)) => vec![Quantity::Phase],
         ([], None) => Quantity::ALL.into_iter().filter(|quantity| *quantity != Quantity::Phase).collect(),
@@ -104,7 +63,7 @@ pub(super) fn write(args: &CoefficientsArgs) -> Result<(), String> {
         species: args.species.clone(),
     };
     let format = args.output.format(Format::Text)?;
-    let sheet = coefficients::sheet(Data(&args.data), &place, &request).map_err(|e| e.to_string())?;
+    let sheet = coefficients::sheet(Data(&args.place.data), &place, &request).map_err(|e| e.to_string())?;
     let bytes = sheet.encode(format, args.output.bare).map_err(|e| e.to_string())?;
     output::put(&bytes, args.output.file())
 }

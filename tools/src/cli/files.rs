@@ -1,12 +1,17 @@
 //! The subcommands `export`, `inspect` and `sources`.
 
 use super::output;
+use super::place::PlaceArgs;
 use clap::Args;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use tools::column::Column;
+use tools::data::Data;
+use tools::numbers::Numbers;
+use tools::programs::{Layers, Program};
 use tools::sheet::Format;
 use tools::sources::Sources;
-use tools::{export, inspect, sources};
+use tools::{coefficients, export, inspect, sources};
 
 /// In which form, and to where.
 #[derive(Args)]
@@ -46,19 +51,44 @@ impl OutputArgs {
 #[derive(Args)]
 pub(super) struct ExportArgs {
     /// A table, such as data/rayleigh.table
-    file: PathBuf,
+    #[arg(required_unless_present = "program", conflicts_with = "program")]
+    file: Option<PathBuf>,
     /// Fields, separated by commas [default: all]
-    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', conflicts_with = "program")]
     field: Vec<String>,
     #[command(flatten)]
     output: OutputArgs,
+    /// The air over a place for this program, into the folder --output: phase functions, coefficients and profiles, with their units
+    #[arg(long = "for", value_name = "PROGRAM", id = "program", requires = "output", conflicts_with_all = ["format", "bare"],
+        value_parser = Program::ALL.map(Program::name), help_heading = "The air for another program")]
+    program: Option<String>,
+    /// Wavelengths in nm, 300 to 1000: a list, a range [default: 550; for pbrt, blender, unreal and bevy 650,550,450, which stand for
+    /// red, green and blue]
+    #[arg(long, value_name = "NM", requires = "program", help_heading = "The air for another program")]
+    wavelength: Option<Numbers>,
+    /// Thickness of layers in km, 0.01 to 10
+    #[arg(
+        long,
+        value_name = "KM",
+        default_value_t = 0.1,
+        requires = "program",
+        help_heading = "The air for another program"
+    )]
+    step: f64,
+    #[command(flatten, next_help_heading = "The air for another program")]
+    place: PlaceArgs,
 }
 
-/// Writes a table in another format; CSV on standard output if nothing else is said.
+/// Writes a table in another format; CSV on standard output if nothing else is said. Or the air for a program.
 pub(super) fn export(args: &ExportArgs) -> Result<(), String> {
+    let file = match (&args.file, args.program.as_deref().and_then(Program::from_name)) {
+        (_, Some(program)) => return export_for(program, args),
+        (Some(file), None) => file,
+        (None, None) => return Err("name a table, or a program with --for".into()),
+    };
     let format = args.output.format(Format::Csv)?;
-    let (sources, table) = Sources::of_file(&args.file).map_err(|e| e.to_string())?;
-    let at = |e: export::ExportError| format!("{}: {e}", args.file.display());
+    let (sources, table) = Sources::of_file(file).map_err(|e| e.to_string())?;
+    let at = |e: export::ExportError| format!("{}: {e}", file.display());
     let bytes = match format {
         Format::Json => export::json(&table, &args.field, &sources).map_err(at)?.into_bytes(),
         _ => {
@@ -67,6 +97,25 @@ pub(super) fn export(args: &ExportArgs) -> Result<(), String> {
         }
     };
     output::put(&bytes, args.output.file())
+}
+
+/// Writes the files of a program into a folder.
+fn export_for(program: Program, args: &ExportArgs) -> Result<(), String> {
+    let Some(folder) = args.output.file() else { return Err("name a folder with --output".into()) };
+    let place = args.place.place()?;
+    let data = Data(&args.place.data);
+    let column = Column::read(data, &place).map_err(|e| e.to_string())?;
+    let sources = Sources::of(data.0, &place.table_files()).map_err(|e| e.to_string())?;
+    let settings = coefficients::settings(&column, &place).map_err(|e| e.to_string())?;
+    let wavelengths = args.wavelength.as_ref().map_or(program.wavelengths_nm(), |numbers| &numbers.0);
+    let layers = Layers::new(&column, (wavelengths, args.step), settings, sources).map_err(|e| e.to_string())?;
+    let files = layers.files(program).map_err(|e| e.to_string())?;
+    std::fs::create_dir_all(folder).map_err(|e| format!("{}: cannot be made: {e}", folder.display()))?;
+    for (name, bytes) in &files {
+        output::put(bytes, Some(&folder.join(name)))?;
+    }
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    output::print(format!("{}: {}\n", folder.display(), names.join(", ")).as_bytes())
 }
 
 /// Arguments of `inspect`.
