@@ -26,7 +26,7 @@ struct Args {
     /// Write nothing; fail if the report does not hold what is found, of all sections or of those of --only
     #[arg(long, conflicts_with = "quick")]
     check: bool,
-    /// The report
+    /// The report [default: docs/validation.md of the root]
     #[arg(short, long, value_name = "FILE.md")]
     output: Option<PathBuf>,
     /// Root of the project, with data/, raw-data/, plots/ and validation/
@@ -83,6 +83,12 @@ fn run(args: &Args) -> Result<(), String> {
         return Ok(());
     }
     let root = &args.root;
+    if !root.join("data").is_dir() {
+        return Err(format!("{}: no folder data there: name the root of the project with --root", root.display()));
+    }
+    if !args.only.is_empty() && !args.check && args.output.is_some() {
+        return Err("sections of --only are printed: leave out --output".into());
+    }
     let output = args.output.clone().unwrap_or_else(|| root.join("docs/validation.md"));
     let writes = args.only.is_empty() && !args.check && (!args.quick || args.output.is_some());
     if writes {
