@@ -16,9 +16,8 @@ const MOST: f64 = 4096.0;
 
 /// What the solar disc adds to each pixel, in sr^-1 per unit solar irradiance: the mean over a
 /// grid of points in the pixel of the disc's radiance times the transmittance of the air, the
-/// points 1/32 of the disc's radius apart; 1/8 in pixels larger than the disc, and 4096 across at
-/// most. Empty if the disc
-/// is not to be seen. Points outside the circle of a fisheye do not count.
+/// points 1/32 of the disc's radius apart; 1/8 in pixels larger than the disc, and 4096 across and
+/// down at most. Empty if the disc is not to be seen. Points outside the circle of a fisheye do not count.
 #[must_use]
 pub fn disc_layer(scene: &Scene, sky: &Sky) -> DiscLayer {
     if !scene.sun_disc {
@@ -33,16 +32,23 @@ pub fn disc_layer(scene: &Scene, sky: &Sky) -> DiscLayer {
         if middle.angle_between(sky.sun_direction()) > radius + reach {
             return None;
         }
-        let radii = 2.0 * reach / radius;
-        let points = (radii * ACROSS_RADIUS).clamp(LEAST, MANY).max(radii * COARSE).min(MOST).ceil() as u32;
+        // A pixel may be much wider than it is high.
+        let (x, y) = (f64::from(x), f64::from(y));
+        let points = |ends: [(f64, f64); 2]| {
+            let halves = ends.map(|(x, y)| camera.direction(x, y).map_or(reach, |end| end.angle_between(middle)));
+            let radii = (halves[0] + halves[1]) / radius;
+            (radii * ACROSS_RADIUS).clamp(LEAST, MANY).max(radii * COARSE).min(MOST).ceil() as u32
+        };
+        let across = points([(x, y + 0.5), (x + 1.0, y + 0.5)]);
+        let down = points([(x + 0.5, y), (x + 0.5, y + 1.0)]);
         let mut factors = vec![0.0; sky.wavelengths()];
         // Sunlight is natural.
         let weight = sky.passes();
         let (mut inside, mut lit) = (0.0, false);
-        for j in 0..points {
-            for i in 0..points {
-                let at = |origin: u32, k: u32| f64::from(origin) + (f64::from(k) + 0.5) / f64::from(points);
-                let Some(direction) = camera.direction(at(x, i), at(y, j)) else { continue };
+        let at = |k: u32, points: u32| (f64::from(k) + 0.5) / f64::from(points);
+        for j in 0..down {
+            for i in 0..across {
+                let Some(direction) = camera.direction(x + at(i, across), y + at(j, down)) else { continue };
                 inside += 1.0;
                 lit |= sky.add_disc(direction, weight, &mut factors);
             }

@@ -169,7 +169,7 @@ pub(super) fn quadrature<const L: usize>(
         return false;
     }
     let (most, each) = MOST_PARTS;
-    let parts = (thick / each).ceil().max(least).clamp(1.0, most);
+    let parts = (thick / each).ceil().clamp(1.0, most).max(least);
     let mut scattered = [[0.0; L]; MOST_SPECIES];
     let rule: &[(f64, f64)] = if fine { &GAUSS_4 } else { &GAUSS_2 };
     // Where the interval is divided, before and after the perigee.

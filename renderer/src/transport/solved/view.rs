@@ -137,11 +137,9 @@ impl<const L: usize> Solved<L> {
         let mut dipoles = vec![[0.0; L]; if polarised { 2 * places.len() } else { 0 }];
         let ahead = polarised.then(|| self.optics.onward.along(from, direction));
         let through = if single { None } else { self.optics.aureole.along(from, direction) };
-        // Four nodes of Gauss' rule where the line passes through the air in front of space, or two.
-        let fine = chord.perigee() > 0.0 && begin < 0.0;
-        let [edge, other] = sight.shadow_edges();
-        let mut cuts = [edge, other, 0.0];
-        cuts.sort_by(f64::total_cmp);
+        // The line passes through the air in front of space.
+        let passes = chord.perigee() > 0.0 && begin < 0.0;
+        let cuts = sight.cuts();
         'line: for i in 0..places.len().saturating_sub(1) {
             let (mut a, end) = (places[i].s.max(begin), places[i + 1].s.min(end));
             let stencil = Stencil::around(i, &places, &self.grid.walls);
@@ -158,10 +156,10 @@ impl<const L: usize> Solved<L> {
                 ahead,
             });
             let mut taker = (taker, linear);
-            for b in cuts.into_iter().chain([end]) {
+            for b in cuts.iter().copied().chain([end]) {
                 let b = b.min(end);
                 if b > a {
-                    let rule = Rule { fine, least: sight.parts(a, b), bends: &self.grid.bends };
+                    let rule = sight.rule(a, b, passes);
                     if !quadrature(&chord, &self.optics, (a, b), rule, &mut taker) {
                         break 'line;
                     }
@@ -384,8 +382,21 @@ impl<const L: usize> Take<L> for Taker<'_, L> {
     }
 }
 
-/// Change of the altitude at which sunlight passes the planet, in one part of a line, as a share of that of the top.
-const PASSES: f64 = 0.02;
+/// Cosine of the sun's zenith angle below which its light may change fast along a line.
+const LOW_SUN: f64 = 0.1;
+
+/// Changes of its optical depth that Gauss' rules of two and of four nodes bear (1e-6 and 4e-6), most parts for them, and a
+/// transmittance that does not count.
+const COARSE_DEPTH: f64 = 0.25;
+const FINE_DEPTH: f64 = 3.0;
+const MOST_GRAZED: f64 = 16.0;
+const DIM: f64 = 1e-9;
+
+/// Most edges of layers at which sunlight that touches them divides a line.
+const MOST_LAYERS: usize = 8;
+
+/// Sunlight at an end of an interval, which may be the edge of the shadow, is that so far inside.
+const INSET: f64 = 1e-3;
 
 /// A line of sight with a sun.
 pub(super) struct Sight<'a, const L: usize> {
@@ -398,16 +409,26 @@ pub(super) struct Sight<'a, const L: usize> {
 }
 
 impl<const L: usize> Sight<'_, L> {
-    /// Where the line passes the surface of the planet's shadow, a cylinder about the axis to the sun:
-    /// |p|^2 - (p . sun)^2 = R^2, a quadratic in the distance from the perigee. Infinite where it does not.
-    fn shadow_edges(&self) -> [f64; 2] {
-        let r = self.solved.grid.radius;
-        let start = self.from.up * (r + self.from.altitude_m);
+    /// Where the line is divided: at its perigee, at the edge of the planet's shadow, and where the sunlight that arrives touches the edge of a
+    /// layer on its way, from where on it is taken from a beam as the root of the distance.
+    fn cuts(&self) -> Vec<f64> {
+        let jumps = self.solved.optics.medium.jumps();
+        let touched = jumps.iter().take(MOST_LAYERS).flat_map(|altitude| self.grazes(*altitude));
+        let dusk = touched.filter(|s| s.is_finite() && self.position(*s).dot(self.sun) < 0.0);
+        let mut cuts: Vec<f64> = self.grazes(0.0).into_iter().chain([0.0]).chain(dusk).collect();
+        cuts.sort_by(f64::total_cmp);
+        cuts
+    }
+
+    /// Where the line passes the cylinder about the axis to the sun of the light that passes the planet at an altitude:
+    /// |p|^2 - (p . sun)^2 = (R + h)^2, a quadratic in the distance from the perigee. Infinite where it does not.
+    fn grazes(&self, altitude: f64) -> [f64; 2] {
+        let start = self.from.up * (self.solved.grid.radius + self.from.altitude_m);
         let perigee = start + self.direction * self.chord.travelled(0.0);
         let across = perigee - self.sun * perigee.dot(self.sun);
         let along = self.direction - self.sun * self.direction.dot(self.sun);
         let (a, b) = (along.length_squared(), across.dot(along));
-        let c = across.length_squared() - r * r;
+        let c = across.length_squared() - (self.solved.grid.radius + altitude).powi(2);
         let root = b * b - a * c;
         if a < 1e-12 || root < 0.0 {
             return [f64::INFINITY; 2];
@@ -416,26 +437,34 @@ impl<const L: usize> Sight<'_, L> {
         [(-b - root) / a, (-b + root) / a]
     }
 
-    /// How many parts of an interval the sun asks for: its light passes by the planet at an altitude that may change fast.
-    fn parts(&self, a: f64, b: f64) -> f64 {
-        let r = self.solved.grid.radius;
-        let start = self.from.up * (r + self.from.altitude_m);
-        let passes = |s: f64| {
-            let position = start + self.direction * self.chord.travelled(s);
-            let along = position.dot(self.sun);
-            let radius = position.length();
-            (along < 0.1 * radius, (position - self.sun * along).length())
-        };
-        let ((low_a, at_a), (low_b, at_b)) = (passes(a), passes(b));
+    /// How an interval is integrated: where sunlight grazes the planet, finely enough for what the air leaves of it.
+    #[inline(always)]
+    fn rule(&self, a: f64, b: f64, passes: bool) -> Rule<'_> {
         let turns = a.abs().min(b.abs()) < 1.0 && a.abs().max(b.abs()) > 2e4;
+        let grazed = self.grazed(a, b);
         let least = if turns { 3.0 } else { 1.0 };
-        if low_a || low_b {
-            // Sunlight that passes through a layer with bends changes faster.
-            let passes = if self.solved.grid.bends.is_empty() { PASSES } else { 0.3 * PASSES };
-            ((at_a - at_b).abs() / (passes * self.solved.optics.medium.top_m())).ceil().max(least)
-        } else {
-            least
+        Rule {
+            fine: passes || grazed > COARSE_DEPTH,
+            least: (grazed / FINE_DEPTH).ceil().clamp(least, MOST_GRAZED),
+            bends: &self.solved.grid.bends,
         }
+    }
+
+    /// How much the optical depth of sunlight changes over an interval, as far as it counts; 0 where the sun is high. Gauss' rule of four
+    /// nodes is off by d^8 T / 1.8e9 of a transmittance that falls by exp(-d) from T: so the change is weighted with T^(1/8).
+    #[inline(always)]
+    fn grazed(&self, a: f64, b: f64) -> f64 {
+        let ends = [a + INSET * (b - a), b - INSET * (b - a)].map(|s| self.chord.place(self.from, self.direction, s));
+        if ends.iter().all(|place| place.up.dot(self.sun) > LOW_SUN) {
+            return 0.0;
+        }
+        let [from, to] = ends.map(|place| self.sunlight.transmittance(place, self.sun).unwrap_or([0.0; L]));
+        let mut most = 0.0_f64;
+        for (from, to) in from.into_iter().zip(to) {
+            let (low, high) = (from.min(to).max(DIM), from.max(to).max(DIM));
+            most = most.max((high / low).ln() * high.sqrt().sqrt().sqrt());
+        }
+        most
     }
 
     /// A point of the line, from the planet's centre.
