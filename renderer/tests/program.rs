@@ -36,3 +36,24 @@ fn a_reader_that_has_seen_enough_is_no_error() {
     let words = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && words.is_empty(), "{words}");
 }
+
+/// `airlight` with these words in a folder of its own, which is made empty; the tables are those of the project.
+fn airlight(folder: &str, files: &[(&str, &str)], words: &[&str]) -> Output {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    for (name, text) in files {
+        std::fs::write(folder.join(name), text).expect("written");
+    }
+    Command::new(env!("CARGO_BIN_EXE_airlight")).args(words).current_dir(folder).output().expect("the program starts")
+}
+
+#[test]
+fn a_receipt_takes_the_place_of_no_other_file() {
+    let words = ["render", "scene.json", "-o", "scene.exr"];
+    let output = airlight("receipt", &[("scene.json", "{\"month\": 3}")], &words);
+    let sentence = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{sentence}");
+    assert!(sentence.contains("scene.json") && sentence.contains("--no-receipt"), "{sentence}");
+    assert_eq!(sentence.lines().count(), 1, "{sentence}");
+}

@@ -209,12 +209,15 @@ pub(super) struct RenderArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Files")]
 pub(super) struct PictureArgs {
-    /// EXR file to write; the PNG has the same name
+    /// EXR file to write; the PNG and the receipt (JSON) have the same name
     #[arg(short, long, value_name = "FILE", default_value = "sky.exr")]
     pub output: PathBuf,
     /// Folder of the tables
     #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
+    /// Write no receipt (NAME.json) beside the picture; its EXR file holds one either way
+    #[arg(long)]
+    pub no_receipt: bool,
     /// Write the spectral channels too (S0.550,000nm in W m^-2 sr^-1 nm^-1)
     #[arg(long)]
     pub spectral: bool,

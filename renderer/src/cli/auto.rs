@@ -19,7 +19,7 @@ use std::time::Instant;
 pub(super) fn run(args: &RenderArgs, scene: &Scene, begin: Instant) -> Result<Outcome, Failure> {
     let metric = args.metric.unwrap_or(Metric::Radiance);
     let asked = args.error.map_or(0.01, |error| error.of(metric));
-    let files = Files::new(&args.files.output, None)?;
+    let files = Files::new(&args.files.output, None, !args.files.no_receipt)?;
     let data = Data::load(&args.files.data).map_err(Failure::error)?;
     let pool = super::pool(args.threads)?;
     let folder = super::made(args.keep_tables.as_deref())?;

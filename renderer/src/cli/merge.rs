@@ -30,7 +30,7 @@ pub(super) struct MergeArgs {
 
 pub(super) fn run(args: &MergeArgs) -> Result<Outcome, Failure> {
     let begin = Instant::now();
-    let files = Files::new(&args.files.output, args.checkpoint.as_deref())?;
+    let files = Files::new(&args.files.output, args.checkpoint.as_deref(), !args.files.no_receipt)?;
     // A picture stands for the state beside it.
     let beside = |path: &PathBuf| if has_extension(path, "exr") { path.with_extension("state") } else { path.clone() };
     let paths: Vec<PathBuf> = args.states.iter().map(beside).collect();

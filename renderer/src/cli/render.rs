@@ -51,7 +51,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
         _ => Part { seed: scene.seed, shard: args.shard.unwrap_or_default() },
     };
     let extent = Extent { shard: part.shard, deadline };
-    let files = Files::new(&args.files.output, checkpoint(args).as_deref())?;
+    let files = Files::new(&args.files.output, checkpoint(args).as_deref(), !args.files.no_receipt)?;
     let data = Data::load(&args.files.data).map_err(Failure::error)?;
     let pool = super::pool(args.threads)?;
     let folder = super::made(args.keep_tables.as_deref())?;

@@ -8,7 +8,8 @@ use super::render::{failure, stop_on_interrupt};
 use super::{Failure, Outcome};
 use crate::data::Data;
 use crate::film::{Development, Picture, exr, png};
-use crate::render::{Control, End, Part, RenderError, Shard, Sky, Summary, disc_layer, receipt, render};
+use crate::render::receipt::Facts;
+use crate::render::{Control, End, Part, RenderError, Shard, Sky, Summary, disc_layer, render};
 use crate::scene::{Moment, Scene};
 use crate::sequence::{Course, Sequence, Track, steepest};
 use clap::{Args, ValueEnum};
@@ -124,7 +125,17 @@ fn encode(
     }
     let summary = Summary::new(sky, scene.seed, stop);
     let parts = [Part { seed: scene.seed, shard: Shard::default() }];
-    let attributes = receipt::receipt(scene, sky, &parts, &rendering, (&summary, exposure_ev), (None, None));
+    let facts = Facts {
+        scene,
+        sky,
+        parts: &parts,
+        rendering: &rendering,
+        summary: &summary,
+        exposure_ev,
+        verdict: None,
+        achieved: None,
+    };
+    let attributes = facts.attributes()?;
     let wavelengths = (args.render.files.spectral || scene.polarisation).then(|| scene.wavelengths());
     Ok(Some(exr::encode(&picture, wavelengths.as_ref().map(|all| all.nm()), &attributes)?))
 }
