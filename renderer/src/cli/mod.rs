@@ -7,6 +7,8 @@
 mod args;
 mod auto;
 mod bench;
+mod compare;
+mod doctor;
 mod gallery;
 mod light;
 mod merge;
@@ -47,6 +49,10 @@ enum Command {
     Gallery(gallery::GalleryArgs),
     /// Put runs with different seeds or shards together as one picture
     Merge(merge::MergeArgs),
+    /// Say how far two pictures of one scene differ: relative errors, standard errors, colours
+    Compare(compare::CompareArgs),
+    /// Say why a picture is black, noisy, blown out or slow, or would be, each with its number and a remedy
+    Doctor(doctor::DoctorArgs),
     /// Answer a file of reference cases: radiances with their standard errors
     Radiance(radiance::RadianceArgs),
     /// Measure what a direction and a picture cost on skies that other renderers were timed on
@@ -61,6 +67,8 @@ enum Command {
 enum Outcome {
     Done,
     Interrupted,
+    /// What was compared differs by more than was asked.
+    Differs,
 }
 
 /// Why a command fails: one sentence and an exit code.
@@ -96,6 +104,8 @@ pub fn main() -> ExitCode {
         Command::Scene(command) => scene::run(&command),
         Command::Gallery(args) => gallery::run(&args),
         Command::Merge(args) => merge::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Doctor(args) => doctor::run(&args),
         Command::Radiance(args) => radiance::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Study(args) => study::run(&args),
@@ -104,6 +114,7 @@ pub fn main() -> ExitCode {
     match outcome.and_then(|outcome| output::finish().map(|()| outcome)) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Interrupted) => ExitCode::from(130),
+        Ok(Outcome::Differs) => ExitCode::from(1),
         Err(Failure { message, code }) => {
             output::eprintln!("airlight: {message}");
             ExitCode::from(code)
