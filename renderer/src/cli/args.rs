@@ -1,10 +1,11 @@
 //! Flags, and how they change a scene.
 
-use super::words::{Asked, BiomeName, OzoneName, PhaseName, RenderMethod, Switch, asked, biome, pixel, share, time};
+use super::words::{
+    Asked, BiomeName, OzoneName, PhaseName, RenderMethod, ShardName, Switch, asked, biome, pixel, shard, share, time,
+};
 use crate::atmosphere::Depolarisation;
 use crate::film::{Tone, White};
 use crate::plan::Metric;
-use crate::render::Shard;
 use crate::scene::{Albedo, CameraKind, Moment, Scene, SceneError, SunShape, word};
 use crate::spectrum::{Scheme, Wavelengths};
 use crate::transport::Fineness;
@@ -77,9 +78,11 @@ pub(super) struct RenderArgs {
     /// from the spread of blocks; 1 is pure chance [default: so that there are 16 blocks, at most 64; 4 with --time]
     #[arg(long, value_name = "N", help_heading = "Sampling")]
     pub block: Option<u32>,
-    /// Make part I of N of the picture, for `airlight merge`: every Nth block of the samples (--spp counts the whole)
-    #[arg(long, value_name = "I/N", help_heading = "Sampling")]
-    pub shard: Option<Shard>,
+    /// Make part I of N of the picture, for `airlight merge`: every Nth block of the samples (--spp counts the whole), N up to 65536. With env
+    /// the launcher says which: an array of Slurm, srun, mpirun; names of files then end in -I-of-N, as the default name always does
+    /// [default: the whole picture]
+    #[arg(long, value_name = "I/N|env", value_parser = shard, help_heading = "Sampling")]
+    pub shard: Option<ShardName>,
     /// Seed of the random numbers, 0 to 2^64 - 1 [default: 0]
     #[arg(long, value_name = "S", help_heading = "Sampling")]
     pub seed: Option<u64>,
@@ -205,12 +208,15 @@ pub(super) struct RenderArgs {
     pub aerosol: AerosolArgs,
 }
 
+/// The picture if no name is given.
+pub(super) const OUTPUT: &str = "sky.exr";
+
 /// What is written of a picture, and from which tables.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Files")]
 pub(super) struct PictureArgs {
     /// EXR file to write; the PNG and the receipt (JSON) have the same name
-    #[arg(short, long, value_name = "FILE", default_value = "sky.exr")]
+    #[arg(short, long, value_name = "FILE", default_value = OUTPUT)]
     pub output: PathBuf,
     /// Folder of the tables
     #[arg(long, value_name = "DIR", default_value = "data")]

@@ -1,12 +1,13 @@
 //! `airlight merge`.
 
 use super::args::PictureArgs;
+use super::output::println;
 use super::picture::{Files, Product, has_extension, read_state};
 use super::render::{sky, stop_on_interrupt};
 use super::{Failure, Outcome};
 use crate::data::Data;
 use crate::film::Film;
-use crate::render::{End, Head, Merged, Rendering, Summary, disc_layer};
+use crate::render::{End, Head, Merged, Part, Rendering, Shard, Summary, disc_layer};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -69,6 +70,9 @@ pub(super) fn run(args: &MergeArgs) -> Result<Outcome, Failure> {
         )));
     }
     head.scene = scene.portable();
+    if let Some(missing) = missing(&head.parts).filter(|_| !args.files.quiet) {
+        println!("incomplete  {missing}");
+    }
     let pool = super::pool(args.threads)?;
     let stop = stop_on_interrupt();
     let (summary, disc) = pool.install(|| (Summary::new(&sky, scene.seed, &stop), disc_layer(&scene, &sky)));
@@ -80,4 +84,33 @@ pub(super) fn run(args: &MergeArgs) -> Result<Outcome, Failure> {
         &pool,
     )?;
     Ok(Outcome::Done)
+}
+
+/// The shards that are not there, where all parts are shards of one seed and number.
+fn missing(parts: &[Part]) -> Option<String> {
+    const SHOWN: usize = 8;
+    let first = parts.first()?;
+    let of = first.shard.of();
+    if parts.iter().any(|part| part.seed != first.seed || part.shard.of() != of) {
+        return None;
+    }
+    let there = |index: &u32| parts.iter().any(|part| Shard::new(*index, of) == Ok(part.shard));
+    let missing: Vec<String> = (1..=of).filter(|index| !there(index)).map(|index| format!("{index}/{of}")).collect();
+    let more = if missing.len() > SHOWN { format!(" and {} more", missing.len() - SHOWN) } else { String::new() };
+    let shown = missing.iter().take(SHOWN).cloned().collect::<Vec<_>>().join(", ");
+    (!missing.is_empty()).then(|| format!("without {} of {of} shards: {shown}{more}", missing.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shards_that_are_missing_are_named() {
+        let part = |seed, index, of| Part { seed, shard: Shard::new(index, of).expect("possible") };
+        assert_eq!(missing(&[part(0, 1, 3), part(0, 2, 3), part(0, 3, 3)]), None);
+        let found = missing(&[part(0, 1, 4), part(0, 3, 4)]);
+        assert_eq!(found.as_deref(), Some("without 2 of 4 shards: 2/4, 4/4"));
+        assert_eq!(missing(&[part(0, 1, 1), part(1, 1, 2)]), None, "seeds are whole pictures of their own");
+    }
 }

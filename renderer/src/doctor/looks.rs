@@ -87,7 +87,8 @@ impl Looks {
             let Some(direction) = camera.direction(at(x, width), at(y, height)) else { continue };
             to_ground += usize::from(direction.z < horizon);
             sky.radiance(direction, &Sampler::new(0, 0, 0), &mut factors);
-            luminances.push(sky.colour().xyz(&factors)[1]);
+            // Where next to nothing is left a coarse table may be below 0.
+            luminances.push(sky.colour().xyz(&factors)[1].max(0.0));
         }
         Ok(Self { luminances, to_ground, cost: cost(scene, &Traits::of(scene, &sky)) })
     }

@@ -5,7 +5,7 @@ use crate::film::{Channels, tone};
 use crate::spectrum::luminance;
 
 /// Shares of the pixels from which on they are the picture.
-const BLOWN: f64 = 0.02;
+const BLOWN: f64 = 0.05;
 const DARK: f64 = 0.5;
 
 /// Luminance over display white that is still told from black in eight bits, and that of the sun's disc, which is to be white.

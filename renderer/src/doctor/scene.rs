@@ -84,7 +84,7 @@ fn night(scene: &Scene) -> Option<Finding> {
     let dip = horizon_dip(scene.altitude_km.max(0.0) * KM).to_degrees();
     let above_horizon = scene.sun_elevation_deg + dip;
     let what = format!(
-        "the sun stands {:.1} degrees below the horizon, and the air has no sunlight from {} on; there are no moon and stars here",
+        "the sun stands {:.1} degrees below the horizon, the air has no sunlight when that is more than {}, and there are no moon and stars here",
         -above_horizon, -NIGHT_DEG
     );
     (above_horizon < NIGHT_DEG).then(|| Finding::new(Trouble::Black, what, "raise the sun: --sun-elevation -6"))
