@@ -3,6 +3,7 @@
 pub mod atmosphere;
 pub mod bench;
 pub mod camera;
+mod carried;
 pub mod cases;
 pub mod cli;
 mod clock;

@@ -57,3 +57,14 @@ fn a_receipt_takes_the_place_of_no_other_file() {
     assert!(sentence.contains("scene.json") && sentence.contains("--no-receipt"), "{sentence}");
     assert_eq!(sentence.lines().count(), 1, "{sentence}");
 }
+
+#[test]
+fn tables_are_found_from_any_folder() {
+    // Single scattering of rural aerosol: every kind of table.
+    let scene = r#"{"method": "single", "biome": "rural", "wavelengths_nm": [550]}"#;
+    let output = airlight("anywhere", &[("scene.json", scene)], &["scene", "check", "scene.json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output = airlight("elsewhere", &[("scene.json", scene)], &["scene", "check", "scene.json", "--data", "."]);
+    let sentence = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(1) && sentence.contains("leave --data out"), "{sentence}");
+}

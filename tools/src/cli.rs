@@ -46,6 +46,10 @@ enum Command {
     Biomes(aerosol::BiomesArgs),
     /// Find what cannot be right in tables and CSV files: units, swapped columns, impossible values
     Lint(lint::LintArgs),
+    /// Write the script that makes a shell complete the words of this program
+    Completions(manners::CompletionArgs),
+    /// Write manual pages, of the program and of each subcommand
+    Man(manners::ManArgs),
     /// Draw what the tables hold: SVG, PNG and CSV of each figure
     #[cfg(feature = "plot")]
     Plot(figures::PlotArgs),
@@ -117,6 +121,8 @@ pub(crate) fn run() -> ExitCode {
         Command::Mie(args) => mie::solve(&args),
         Command::Biomes(args) => aerosol::biomes(&args),
         Command::Lint(args) => return lint::run(&args),
+        Command::Completions(args) => output::print(&manners::completions::<Cli>(args.shell)),
+        Command::Man(args) => man(&args),
         #[cfg(feature = "plot")]
         Command::Plot(args) => figures::draw(&args),
         #[cfg(feature = "plot")]
@@ -131,6 +137,15 @@ pub(crate) fn run() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Writes the manual pages.
+fn man(args: &manners::ManArgs) -> Result<(), String> {
+    let written = manners::put_pages::<Cli>(args.folder.as_deref(), tables::file::replace);
+    for path in written.map_err(|(path, error)| format!("{}: cannot be written: {error}", path.display()))? {
+        output::print(format!("{}\n", path.display()).as_bytes())?;
+    }
+    Ok(())
 }
 
 /// A line on standard error. That nobody reads it is no reason to fail.

@@ -218,9 +218,9 @@ pub(super) struct PictureArgs {
     /// EXR file to write; the PNG and the receipt (JSON) have the same name
     #[arg(short, long, value_name = "FILE", default_value = OUTPUT)]
     pub output: PathBuf,
-    /// Folder of the tables
-    #[arg(long, value_name = "DIR", default_value = "data")]
-    pub data: PathBuf,
+    /// Folder of the tables [default: those that the program carries]
+    #[arg(long, value_name = "DIR")]
+    pub data: Option<PathBuf>,
     /// Write no receipt (NAME.json) beside the picture; its EXR file holds one either way
     #[arg(long)]
     pub no_receipt: bool,

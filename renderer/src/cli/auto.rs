@@ -7,7 +7,6 @@ use super::progress::{Line, amount, percent};
 use super::render::{sky, stop_on_interrupt};
 use super::{Failure, Outcome};
 use crate::clock::process_s;
-use crate::data::Data;
 use crate::plan::Metric;
 use crate::render::{
     Achieved, Control, End, Extent, Head, Part, Progress, Shard, Summary, achieved, disc_layer, empty, go_on,
@@ -20,7 +19,7 @@ pub(super) fn run(args: &RenderArgs, scene: &Scene, begin: Instant) -> Result<Ou
     let metric = args.metric.unwrap_or(Metric::Radiance);
     let asked = args.error.map_or(0.01, |error| error.of(metric));
     let files = Files::new(&args.files.output, None, !args.files.no_receipt)?;
-    let data = Data::load(&args.files.data).map_err(Failure::error)?;
+    let data = super::data(args.files.data.as_deref())?;
     let pool = super::pool(args.threads)?;
     let folder = super::made(args.keep_tables.as_deref())?;
     let stop = stop_on_interrupt();

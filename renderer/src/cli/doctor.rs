@@ -5,7 +5,6 @@ use super::picture::has_extension;
 use super::progress::amount;
 use super::render::read_scene;
 use super::{Failure, Outcome};
-use crate::data::Data;
 use crate::doctor::{Finding, Looks, Seen, of_picture, of_scene, unreadable};
 use crate::film::{Channels, exr, tone};
 use crate::render::receipt;
@@ -20,9 +19,9 @@ pub(super) struct DoctorArgs {
     /// Scene (TOML, JSON, XML of the thesis) or picture (EXR), which carries its scene
     #[arg(value_name = "SCENE|PICTURE")]
     pub file: PathBuf,
-    /// Folder of the tables
-    #[arg(long, value_name = "DIR", default_value = "data")]
-    pub data: PathBuf,
+    /// Folder of the tables [default: those that the program carries]
+    #[arg(long, value_name = "DIR")]
+    pub data: Option<PathBuf>,
     /// Threads for the looks, 1 to 1024 [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -105,7 +104,7 @@ fn look(scene: &Scene, args: &DoctorArgs) -> Result<Option<Looks>, Failure> {
     if scene.validate().is_err() {
         return Ok(None);
     }
-    let data = Data::load(&args.data).map_err(Failure::error)?;
+    let data = super::data(args.data.as_deref())?;
     let pool = super::pool(args.threads)?;
     pool.install(|| Looks::take(scene, &data)).map(Some).map_err(super::render::failure)
 }

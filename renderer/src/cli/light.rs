@@ -7,7 +7,6 @@ use super::render::{sky, stop_on_interrupt};
 use super::words::Switch;
 use super::{Failure, Outcome, unwritable};
 use crate::convention::Program;
-use crate::data::Data;
 use crate::film::{Development, Picture, exr, png, tone};
 use crate::light::solar_angular_radius_at;
 use crate::render::receipt::Facts;
@@ -36,7 +35,7 @@ pub(super) fn run(args: &LightArgs) -> Result<Outcome, Failure> {
     let begin = Instant::now();
     super::sequence::refuse_others(&args.render)?;
     let (scene, files) = (scene(args)?, super::picture::Files::new(&args.render.files.output, None, false)?);
-    let data = Data::load(&args.render.files.data).map_err(Failure::error)?;
+    let data = super::data(args.render.files.data.as_deref())?;
     let pool = super::pool(args.render.threads)?;
     let folder = super::made(args.render.keep_tables.as_deref())?;
     let stop = stop_on_interrupt();

@@ -5,7 +5,6 @@ use super::output::println;
 use super::picture::{Files, Product, has_extension, read_state};
 use super::render::{sky, stop_on_interrupt};
 use super::{Failure, Outcome};
-use crate::data::Data;
 use crate::film::Film;
 use crate::render::{End, Head, Merged, Part, Rendering, Shard, Summary, disc_layer};
 use clap::Args;
@@ -61,13 +60,14 @@ pub(super) fn run(args: &MergeArgs) -> Result<Outcome, Failure> {
     head.scene.white = args.files.white.unwrap_or(head.scene.white);
     head.scene.validate()?;
     let scene = head.scene.clone();
-    let data = Data::load(&args.files.data).map_err(Failure::error)?;
+    let data = super::data(args.files.data.as_deref())?;
     let sky = sky(&scene, &data, None)?;
     if let Some(difference) = head.difference(&Head::new(&scene, &sky, head.parts.clone())) {
-        let folder = args.files.data.display();
-        return Err(Failure::usage(format!(
-            "the runs were made with other tables than those of {folder}: {difference}"
-        )));
+        let whose = match &args.files.data {
+            Some(folder) => format!("those of {}", folder.display()),
+            None => "the program carries, name theirs with --data".into(),
+        };
+        return Err(Failure::usage(format!("the runs were made with other tables than {whose}: {difference}")));
     }
     head.scene = scene.portable();
     if let Some(missing) = missing(&head.parts).filter(|_| !args.files.quiet) {

@@ -61,6 +61,10 @@ enum Command {
     Study(study::StudyArgs),
     /// Trace paths through scenes drawn at random, and report any that is not finite, negative or endless
     Sweep(sweep::SweepArgs),
+    /// Write the script that makes a shell complete the words of this program
+    Completions(manners::CompletionArgs),
+    /// Write manual pages, of the program and of each subcommand
+    Man(manners::ManArgs),
 }
 
 /// What a command ends in, short of an error.
@@ -110,6 +114,11 @@ pub fn main() -> ExitCode {
         Command::Bench(args) => bench::run(&args),
         Command::Study(args) => study::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Completions(args) => {
+            output::bytes(&manners::completions::<Command>(args.shell));
+            Ok(Outcome::Done)
+        }
+        Command::Man(args) => man(&args),
     };
     match outcome.and_then(|outcome| output::finish().map(|()| outcome)) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
@@ -122,9 +131,23 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// Writes the manual pages.
+fn man(args: &manners::ManArgs) -> Result<Outcome, Failure> {
+    let written = manners::put_pages::<Command>(args.folder.as_deref(), tables::file::replace);
+    for path in written.map_err(|(path, error)| unwritable(&path, &error))? {
+        output::println!("{}", path.display());
+    }
+    Ok(Outcome::Done)
+}
+
 /// A file that cannot be written.
 fn unwritable(path: &std::path::Path, error: &std::io::Error) -> Failure {
     Failure::error(format!("{}: cannot be written: {error}", path.display()))
+}
+
+/// The tables of a folder, or those that the program carries.
+fn data(folder: Option<&std::path::Path>) -> Result<crate::data::Data, Failure> {
+    folder.map_or_else(crate::data::Data::carried, crate::data::Data::load).map_err(Failure::error)
 }
 
 /// The folder, made if it is named and not there.

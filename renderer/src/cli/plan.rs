@@ -27,7 +27,7 @@ pub(super) fn run(args: &PlanArgs) -> Result<Outcome, Failure> {
         return Err(Failure::usage("a plan wants an error: add --error 1%"));
     };
     let scene = super::render::scene(&args.render)?;
-    let data = Data::load(&args.render.files.data).map_err(Failure::error)?;
+    let data = super::data(args.render.files.data.as_deref())?;
     let plan = plan(&scene, &data, &args.render, asked.of(args.render.metric.unwrap_or(Metric::Radiance)))?;
     if args.json {
         println!("{}", json(&plan, &scene));

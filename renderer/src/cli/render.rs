@@ -55,7 +55,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     let extent = Extent { shard: part.shard, deadline };
     let (output, checkpoint) = names(args, shard);
     let files = Files::new(&output, checkpoint.as_deref(), !args.files.no_receipt)?;
-    let data = Data::load(&args.files.data).map_err(Failure::error)?;
+    let data = super::data(args.files.data.as_deref())?;
     let pool = super::pool(args.threads)?;
     let folder = super::made(args.keep_tables.as_deref())?;
     let sky = pool.install(|| sky(&scene, &data, folder))?;

@@ -6,7 +6,6 @@ use super::picture::has_extension;
 use super::progress::{Line, duration, percent};
 use super::render::{failure, stop_on_interrupt};
 use super::{Failure, Outcome};
-use crate::data::Data;
 use crate::film::{Development, Picture, exr, png};
 use crate::render::receipt::Facts;
 use crate::render::{Control, End, Part, RenderError, Shard, Sky, Summary, disc_layer, render};
@@ -64,7 +63,7 @@ pub(super) fn run(args: &SequenceArgs) -> Result<Outcome, Failure> {
     };
     let frames = course.frames(&scene, args.frames as usize)?;
     let names = Names::new(&args.render.files.output)?;
-    let data = Data::load(&args.render.files.data).map_err(Failure::error)?;
+    let data = super::data(args.render.files.data.as_deref())?;
     let pool = super::pool(args.render.threads)?;
     let folder = super::made(args.render.keep_tables.as_deref())?;
     let stop = stop_on_interrupt();
