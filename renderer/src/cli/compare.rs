@@ -61,7 +61,8 @@ fn compare(args: &CompareArgs) -> Result<Outcome, Failure> {
             let lacking = "the differences of luminance want R, G and B in both: leave out -o";
             let shown = difference_picture(&a, &b, args.scale).ok_or_else(|| unlike(&lacking))?;
             let bytes = png::file(shown.size, &shown.pixels).map_err(Failure::error)?;
-            tables::file::replace(path, &bytes).map_err(|error| super::unwritable(path, &error))?;
+            super::announce(path, args.quiet || args.json);
+            super::write(path, &bytes)?;
             Some(shown.scale)
         }
         None => None,

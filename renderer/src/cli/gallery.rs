@@ -3,7 +3,7 @@
 use super::output::println;
 use super::progress::{Line, duration, percent, size};
 use super::render::stop_on_interrupt;
-use super::{Failure, Outcome, unwritable};
+use super::{Failure, Outcome};
 use crate::film::png;
 use crate::gallery::{Exposure, Figure, Made, Work, figures, make};
 use crate::render::{Control, Progress};
@@ -65,6 +65,7 @@ pub(super) fn run(args: &GalleryArgs) -> Result<Outcome, Failure> {
             return Ok(Outcome::Interrupted);
         };
         let path = args.output.join(format!("{}.png", figure.name));
+        super::announce(&path, args.quiet);
         let bytes = deliver(&path, &made)?;
         if !args.quiet {
             let time = duration(start.elapsed().as_secs_f64());
@@ -97,7 +98,7 @@ fn counterpart(figure: &Figure) -> String {
 
 fn deliver(path: &Path, made: &Made) -> Result<usize, Failure> {
     let bytes = png::file(made.size, &made.pixels).map_err(Failure::error)?;
-    tables::file::replace(path, &bytes).map_err(|error| unwritable(path, &error))?;
+    super::write(path, &bytes)?;
     Ok(bytes.len())
 }
 

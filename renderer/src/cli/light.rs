@@ -5,7 +5,7 @@ use super::output::{eprintln, println};
 use super::progress::{Line, amount, duration, percent, size};
 use super::render::{sky, stop_on_interrupt};
 use super::words::Switch;
-use super::{Failure, Outcome, unwritable};
+use super::{Failure, Outcome};
 use crate::convention::Program;
 use crate::film::{Development, Picture, exr, png, tone};
 use crate::light::solar_angular_radius_at;
@@ -35,6 +35,7 @@ pub(super) fn run(args: &LightArgs) -> Result<Outcome, Failure> {
     let begin = Instant::now();
     super::sequence::refuse_others(&args.render)?;
     let (scene, files) = (scene(args)?, super::picture::Files::new(&args.render.files.output, None, false)?);
+    files.announce(&args.render.files);
     let data = super::data(args.render.files.data.as_deref())?;
     let pool = super::pool(args.render.threads)?;
     let folder = super::made(args.render.keep_tables.as_deref())?;
@@ -76,9 +77,12 @@ pub(super) fn run(args: &LightArgs) -> Result<Outcome, Failure> {
     let json_path = files.exr().with_extension("json");
     let all = [(files.exr(), map.as_slice()), (files.png(), &shown), (&json_path, text.as_bytes())];
     for (path, bytes) in all {
-        tables::file::replace(path, bytes).map_err(|error| unwritable(path, &error))?;
+        super::write(path, bytes)?;
     }
-    if !args.render.files.quiet {
+    if args.render.files.json {
+        super::output::bytes(text.as_bytes());
+    }
+    if args.render.files.talks() {
         describe(args.program, &scene, &told);
         println!("time        {} on {} threads", duration(begin.elapsed().as_secs_f64()), pool.current_num_threads());
         for (index, (path, bytes)) in all.into_iter().enumerate() {

@@ -20,7 +20,7 @@ pub(super) struct MergeArgs {
     pub states: Vec<PathBuf>,
     #[command(flatten)]
     pub files: PictureArgs,
-    /// Write the state of the whole too, to be merged with more
+    /// Write the state of the whole too, to be merged with more [default: none]
     #[arg(long, value_name = "FILE", help_heading = "Files")]
     pub checkpoint: Option<PathBuf>,
     /// Threads, 1 to 1024; the picture does not depend on it [default: all processors]
@@ -70,9 +70,10 @@ pub(super) fn run(args: &MergeArgs) -> Result<Outcome, Failure> {
         return Err(Failure::usage(format!("the runs were made with other tables than {whose}: {difference}")));
     }
     head.scene = scene.portable();
-    if let Some(missing) = missing(&head.parts).filter(|_| !args.files.quiet) {
+    if let Some(missing) = missing(&head.parts).filter(|_| args.files.talks()) {
         println!("incomplete  {missing}");
     }
+    files.announce(&args.files);
     let pool = super::pool(args.threads)?;
     let stop = stop_on_interrupt();
     let (summary, disc) = pool.install(|| (Summary::new(&sky, scene.seed, &stop), disc_layer(&scene, &sky)));

@@ -1,9 +1,9 @@
 //! What every command that makes a picture shares: the files that it reads and writes, and what it says of them.
 
-use super::Failure;
 use super::args::PictureArgs;
 use super::output::println;
 use super::progress::{amount, duration, percent, size};
+use super::{Failure, write};
 use crate::clock::{process_s, utc};
 use crate::film::{Development, DiscLayer, Estimate, Picture, exr, png, tone};
 use crate::render::left_out::{LeftOut, Off};
@@ -61,6 +61,16 @@ impl Files {
         Ok(files)
     }
 
+    /// Says which files that are there will be replaced, before the work is done that replaces them.
+    pub(super) fn announce(&self, args: &PictureArgs) {
+        let all = [Some(&self.exr), Some(&self.png), self.receipt.as_ref(), self.state.as_ref()];
+        let old = all.into_iter().flatten().filter(|path| path.exists());
+        let old: Vec<String> = old.map(|path| path.display().to_string()).collect();
+        if args.talks() && !old.is_empty() {
+            println!("replaces    {}", old.join(", "));
+        }
+    }
+
     /// Where the picture of polarisation goes, if there is one: `NAME-polarisation.png`.
     fn polarisation(&self) -> PathBuf {
         let mut name = self.exr.file_stem().unwrap_or_default().to_os_string();
@@ -82,10 +92,6 @@ impl Files {
     pub(super) fn state(&self) -> Option<&Path> {
         self.state.as_deref()
     }
-}
-
-fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    tables::file::replace(path, bytes).map_err(|error| super::unwritable(path, &error))
 }
 
 /// A picture that is ready to be written.
@@ -142,12 +148,18 @@ impl Product<'_> {
         if let Some((path, png)) = &polarisation {
             write(path, png)?;
         }
-        if let Some(path) = &files.receipt {
+        if files.receipt.is_some() || args.json {
             let written = [(&files.exr, &exr), (&files.png, &png)].into_iter();
             let written = written.chain(polarisation.as_ref().map(|(path, png)| (path, png)));
-            write(path, &self.receipt(&facts, written, begin, pool)?)?;
+            let receipt = self.receipt(&facts, written, begin, pool)?;
+            if let Some(path) = &files.receipt {
+                write(path, &receipt)?;
+            }
+            if args.json {
+                super::output::bytes(&receipt);
+            }
         }
-        if !args.quiet {
+        if args.talks() {
             describe(scene, sky, summary, rendering, &head.parts);
             if !scene.polarisation && scene.filter_deg.is_none() {
                 describe_left_out(&LeftOut::of(scene, sky.air(), sky.albedo()), sky.is_polarised());

@@ -67,6 +67,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     if let Some((x, y)) = args.pixel {
         return print_sample(&scene, &sky, (x, y), args.sample);
     }
+    files.announce(&args.files);
     let head = Head::new(&scene, &sky, vec![part]);
     let film = start(kept, &scene, &sky, extent, args.resume.as_deref())?;
     let stop = stop_on_interrupt();
@@ -201,7 +202,7 @@ fn shard(args: &RenderArgs) -> Result<Option<Shard>, Failure> {
         Some(ShardName::Env) => {
             let told = Shard::of_launcher(&|name| std::env::var(name).ok());
             let (shard, words) = told.map_err(|error| Failure::usage(format!("--shard env: {error}")))?;
-            if !args.files.quiet {
+            if args.files.talks() {
                 println!("shard       {shard}, by {words}");
             }
             Ok(Some(shard))

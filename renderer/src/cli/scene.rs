@@ -19,7 +19,7 @@ pub(super) enum SceneCommand {
         /// File to write, which must not be there; standard output if none is given
         #[arg(value_name = "FILE.toml")]
         file: Option<PathBuf>,
-        /// Begin with a scene of the gallery
+        /// Begin with a scene of the gallery [default: the default scene]
         #[arg(long, value_name = "NAME")]
         preset: Option<String>,
         /// List the presets, a line each, and write nothing

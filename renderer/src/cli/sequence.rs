@@ -26,10 +26,10 @@ pub(super) struct SequenceArgs {
     #[arg(long, value_name = "WHAT", default_value = "sunset", conflicts_with_all = ["vary", "until"], help_heading = "Frames")]
     pub what: CourseName,
     /// Let a key of the scene go from one value to another instead: sun_elevation_deg, sun_azimuth_deg, altitude_km,
-    /// view_azimuth_deg, view_elevation_deg or fov_deg; more than once for more keys
+    /// view_azimuth_deg, view_elevation_deg or fov_deg; more than once for more keys [default: as --what]
     #[arg(long, value_name = "KEY=FROM:TO", conflicts_with = "until", help_heading = "Frames")]
     pub vary: Vec<Track>,
-    /// Go from --date to this instant instead, at most two days later
+    /// Go from --date to this instant instead, at most two days later [default: as --what]
     #[arg(long, value_name = "INSTANT", help_heading = "Frames")]
     pub until: Option<Moment>,
     /// How many frames, 1 to 100000
@@ -53,6 +53,9 @@ pub(super) enum CourseName {
 pub(super) fn run(args: &SequenceArgs) -> Result<Outcome, Failure> {
     let begin = Instant::now();
     refuse_others(&args.render)?;
+    if args.render.files.json {
+        return Err(Failure::usage("--json is for one picture: frames that end in .exr hold their receipts"));
+    }
     let scene = super::render::scene(&args.render)?;
     let course = match (&args.until, args.vary.as_slice(), args.what) {
         (Some(end), ..) => Course::Until(*end),
@@ -73,6 +76,10 @@ pub(super) fn run(args: &SequenceArgs) -> Result<Outcome, Failure> {
     line.clear();
     let Some(Sequence { frames, mut sky, solved, table_error }) = prepared else { return Ok(interrupted(0, &names)) };
     let prepared_s = begin.elapsed().as_secs_f64();
+    let old = (0..frames.len()).filter(|index| names.path(*index).exists()).count();
+    if old > 0 && !args.skip_existing && !args.render.files.quiet {
+        println!("replaces    {old} of {} frames", frames.len());
+    }
     let (line, mut made) = (Line::new(args.render.files.quiet), 0_u32);
     for (index, frame) in frames.iter().enumerate() {
         let path = names.path(index);
@@ -85,7 +92,7 @@ pub(super) fn run(args: &SequenceArgs) -> Result<Outcome, Failure> {
             line.clear();
             return Ok(interrupted(index, &names));
         };
-        tables::file::replace(&path, &bytes).map_err(|error| super::unwritable(&path, &error))?;
+        super::write(&path, &bytes)?;
         made += 1;
     }
     line.clear();

@@ -162,9 +162,11 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
     let progress = |share: f64| line.show(share, |_| args.what.as_str().to_owned());
     let made = pool.install(|| make(&data, &progress)).map_err(Failure::error)?;
     line.clear();
-    tables::file::replace(&path, &made.bytes).map_err(|e| super::unwritable(&path, &e))?;
+    super::announce(&path, args.quiet);
+    super::write(&path, &made.bytes)?;
     if let Some(bytes) = &made.measured {
-        tables::file::replace(&measured, bytes).map_err(|e| super::unwritable(&measured, &e))?;
+        super::announce(&measured, args.quiet);
+        super::write(&measured, bytes)?;
     }
     if !args.quiet {
         println!("{}", made.rows.join("\n"));
@@ -195,6 +197,7 @@ fn judged() -> Result<(Vec<String>, Chart), String> {
 fn measure_plans(args: &StudyArgs, set: plans::Set, path: &Path, threads: usize) -> Result<Outcome, Failure> {
     const QUICK: usize = 10;
     tables::file::check_writable(path).map_err(|e| super::unwritable(path, &e))?;
+    super::announce(path, args.quiet);
     let data = super::data(args.data.as_deref())?;
     let line = Line::new(args.quiet);
     let atmospheres = if args.quick { QUICK } else { set.size().0 };
@@ -211,7 +214,7 @@ fn measure_plans(args: &StudyArgs, set: plans::Set, path: &Path, threads: usize)
     let known = known.unwrap_or_default();
     let found = plans::measure(&data, (set, atmospheres, known), threads, &progress, &keep).map_err(Failure::error)?;
     line.clear();
-    tables::file::replace(path, found.csv().as_bytes()).map_err(|e| super::unwritable(path, &e))?;
+    super::write(path, found.csv().as_bytes())?;
     if !args.quiet {
         println!("{} scenes of {atmospheres} atmospheres", found.rows.len());
         println!("time        {} on {threads} threads", duration(line.elapsed().as_secs_f64()));
