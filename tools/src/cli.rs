@@ -10,6 +10,7 @@ mod import;
 mod lint;
 mod mie;
 mod output;
+mod report;
 
 use clap::{Args, Parser, Subcommand};
 use std::io::Write;
@@ -56,6 +57,9 @@ enum Command {
     /// Find what cannot be right in tables and CSV files: units, swapped columns, impossible values
     #[command(after_help = examples::LINT)]
     Lint(lint::LintArgs),
+    /// Write one page with what the tables hold, all figures and the pictures of the documents: HTML that opens from disk
+    #[command(after_help = examples::REPORT)]
+    Report(report::ReportArgs),
     /// Write the script that makes a shell complete the words of this program
     Completions(manners::CompletionArgs),
     /// Write manual pages, of the program and of each subcommand
@@ -134,6 +138,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Mie(args) => mie::solve(&args),
         Command::Biomes(args) => aerosol::biomes(&args),
         Command::Lint(args) => return lint::run(&args),
+        Command::Report(args) => report::write(&args),
         Command::Completions(args) => output::print(&manners::completions::<Cli>(args.shell)),
         Command::Man(args) => man(&args),
         #[cfg(feature = "plot")]

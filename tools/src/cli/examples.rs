@@ -76,3 +76,7 @@ pub(super) const STUDY: &str = "\
 Examples:
   airlight-tools study rayleigh
   airlight-tools study thesis --out /tmp/studies";
+
+pub(super) const REPORT: &str = "\
+Example:
+  airlight-tools report -o report.html";
