@@ -1,7 +1,7 @@
 //! The command `airlight`.
 //!
 //! Results go to files, and what they are to standard output; progress and errors
-//! go to standard error. Exit codes: see [`examples::PROGRAM`].
+//! go to standard error. Exit codes stand below the help.
 
 mod args;
 mod auto;
