@@ -1,5 +1,6 @@
-//! The tables of `data/`, read once.
+//! The tables of `data/`, read once: from a folder, or those that the program carries.
 
+use crate::carried::carried;
 use std::path::{Path, PathBuf};
 use tables::file::{checksum, decode};
 use tables::views::{
@@ -31,7 +32,47 @@ pub struct Data {
     pub own_aerosol: Option<Aerosol>,
     /// What was read, for the picture's attributes.
     pub identities: Vec<Identity>,
-    folder: PathBuf,
+    source: Source,
+}
+
+/// Where tables come from.
+#[derive(Debug, Clone)]
+enum Source {
+    /// A folder of somebody's own.
+    Folder(PathBuf),
+    /// The program itself.
+    Carried,
+}
+
+impl Source {
+    /// The path of a table, for errors.
+    fn path(&self, file: &str) -> PathBuf {
+        match self {
+            Self::Folder(folder) => folder.join(file),
+            Self::Carried => file.into(),
+        }
+    }
+
+    /// Reads one file through its view.
+    fn table<V>(&self, file: String, view: fn(&Table) -> Result<V, TableError>) -> Result<(V, Identity), DataError> {
+        let path = self.path(&file);
+        let (table, identity) = match self {
+            Self::Folder(folder) => match read(&path) {
+                Err(DataError::Table(TableError::Read { source, .. }))
+                    if source.kind() == std::io::ErrorKind::NotFound =>
+                {
+                    return Err(DataError::Absent { folder: folder.clone(), file });
+                }
+                other => other?,
+            },
+            Self::Carried => match carried(&file) {
+                Some(bytes) => decoded(&path, bytes)?,
+                None => return Err(DataError::NotCarried { file }),
+            },
+        };
+        let seen = view(&table).map_err(|error| error.at(&path))?;
+        Ok((seen, identity))
+    }
 }
 
 /// What identifies a table file that was read.
@@ -53,10 +94,16 @@ pub struct Identity {
 #[derive(Debug, thiserror::Error)]
 pub enum DataError {
     /// A table is not there.
-    #[error("no table {file} in {}: run `airlight-tools build`, or name the folder with --data", folder.display())]
+    #[error("no table {file} in {}: run `airlight-tools build`, or leave --data out for the tables that the program carries", folder.display())]
     Absent {
         /// The folder looked in.
         folder: PathBuf,
+        /// The file missed.
+        file: String,
+    },
+    /// A table that the program does not carry.
+    #[error("the program carries no table {file}: name a folder that has it with --data")]
+    NotCarried {
         /// The file missed.
         file: String,
     },
@@ -95,10 +142,22 @@ impl Data {
     /// # Errors
     /// [`DataError`] with the first file that is absent or cannot be used, and why.
     pub fn load(folder: &Path) -> Result<Self, DataError> {
+        Self::from_source(Source::Folder(folder.into()))
+    }
+
+    /// The tables that the program carries: those of `data/` when it was built.
+    ///
+    /// # Errors
+    /// As [`Data::load`]: none, if the program was built from whole tables, as a test sees to.
+    pub fn carried() -> Result<Self, DataError> {
+        Self::from_source(Source::Carried)
+    }
+
+    fn from_source(source: Source) -> Result<Self, DataError> {
         let mut identities = Vec::new();
         macro_rules! load {
             ($view:ident) => {{
-                let (view, identity) = in_folder(folder, Kind::$view.file_name(), $view::from_table)?;
+                let (view, identity) = source.table(Kind::$view.file_name(), $view::from_table)?;
                 identities.push(identity);
                 view
             }};
@@ -114,7 +173,7 @@ impl Data {
             ground_albedo: load!(GroundAlbedo),
             own_aerosol: None,
             identities,
-            folder: folder.into(),
+            source,
         })
     }
 
@@ -124,10 +183,10 @@ impl Data {
     /// [`DataError`] if its file is absent, cannot be used, or holds another biome or source.
     pub fn aerosol(&self, source: AerosolSource, biome: Biome) -> Result<(Aerosol, Identity), DataError> {
         let name = Aerosol::file_name(source, biome);
-        let (aerosol, identity) = in_folder(&self.folder, name, Aerosol::from_table)?;
+        let (aerosol, identity) = self.source.table(name, Aerosol::from_table)?;
         if aerosol.origin != Origin::Biome(source, biome) {
             let text = format!("the table holds {}", aerosol.origin);
-            return Err(TableError::Inconsistent(text).at(&self.folder.join(&identity.file)).into());
+            return Err(TableError::Inconsistent(text).at(&self.source.path(&identity.file)).into());
         }
         Ok((aerosol, identity))
     }
@@ -195,34 +254,22 @@ impl Data {
     }
 }
 
-/// Reads one file of the data folder through its view.
-fn in_folder<V>(
-    folder: &Path,
-    file: String,
-    view: fn(&Table) -> Result<V, TableError>,
-) -> Result<(V, Identity), DataError> {
-    let path = folder.join(&file);
-    let (table, identity) = match read(&path) {
-        Err(DataError::Table(TableError::Read { source, .. })) if source.kind() == std::io::ErrorKind::NotFound => {
-            return Err(DataError::Absent { folder: folder.into(), file });
-        }
-        other => other?,
-    };
-    let seen = view(&table).map_err(|error| error.at(&path))?;
-    Ok((seen, identity))
-}
-
 /// Reads one file. Only the table is left of it when this returns.
 fn read(path: &Path) -> Result<(Table, Identity), DataError> {
     let bytes = std::fs::read(path).map_err(|source| TableError::Read { path: path.into(), source })?;
-    let table = decode(&bytes).map_err(|error| error.at(path))?;
+    decoded(path, &bytes)
+}
+
+/// The table in the bytes of a file.
+fn decoded(path: &Path, bytes: &[u8]) -> Result<(Table, Identity), DataError> {
+    let table = decode(bytes).map_err(|error| error.at(path))?;
     let identity = Identity {
         file: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         kind: table.kind,
         own: false,
         title: table.title.clone(),
         // A file that decodes has a checksum.
-        checksum: checksum(&bytes).unwrap_or_default(),
+        checksum: checksum(bytes).unwrap_or_default(),
     };
     Ok((table, identity))
 }

@@ -3,11 +3,14 @@
 pub mod atmosphere;
 pub mod bench;
 pub mod camera;
+mod carried;
 pub mod cases;
 pub mod cli;
 mod clock;
+pub mod compare;
 pub mod convention;
 pub mod data;
+pub mod doctor;
 pub mod film;
 pub mod gallery;
 pub mod geometry;

@@ -2,6 +2,7 @@
 
 mod aerosol;
 mod coefficients;
+mod examples;
 #[cfg(feature = "study")]
 mod figures;
 mod files;
@@ -10,6 +11,7 @@ mod lint;
 mod mie;
 mod output;
 mod place;
+mod report;
 
 use clap::{Args, Parser, Subcommand};
 use std::io::Write;
@@ -21,7 +23,7 @@ use tools::build::{self, Built, CheckReport, Target};
 
 /// Makes, checks and shows the tables that Airlight's renderer reads.
 #[derive(Parser)]
-#[command(name = "airlight-tools", version)]
+#[command(name = "airlight-tools", version, max_term_width = 100, after_help = examples::PROGRAM)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -30,31 +32,50 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Make every table from the raw data, or check that the tables are what the raw data make
+    #[command(after_help = examples::BUILD)]
     Build(BuildArgs),
     /// Make a table of a file of your own: an aerosol, a radiosonde, an ozone sonde, a solar spectrum, an albedo
+    #[command(after_help = examples::IMPORT)]
     Import(import::ImportArgs),
     /// Show what tables or CSV files hold: settings, axes, fields with their ranges, and where it came from
+    #[command(after_help = examples::INSPECT)]
     Inspect(files::InspectArgs),
     /// Number densities, cross-sections, coefficients, optical depths and phase functions of the air over a place
+    #[command(after_help = examples::COEFFICIENTS)]
     Coefficients(coefficients::CoefficientsArgs),
     /// Write a table as CSV, JSON or Parquet; or the air over a place for Mitsuba, pbrt, Blender, Unreal or Bevy
+    #[command(after_help = examples::EXPORT)]
     Export(files::ExportArgs),
     /// Citations and licences of everything that the tables and figures are made from
+    #[command(after_help = examples::SOURCES)]
     Sources(files::SourcesArgs),
     /// Scatter light by spheres: efficiencies and amplitudes of every line of a CSV file
+    #[command(after_help = examples::MIE)]
     Mie(mie::MieArgs),
     /// The aerosols of data/: extinction, albedo, asymmetry, Angstrom exponent and optical depth of each biome
+    #[command(after_help = examples::BIOMES)]
     Biomes(aerosol::BiomesArgs),
     /// Find what cannot be right in tables and CSV files: units, swapped columns, impossible values
+    #[command(after_help = examples::LINT)]
     Lint(lint::LintArgs),
+    /// Write one page with what the tables hold, all figures and the pictures of the documents: HTML that opens from disk
+    #[command(after_help = examples::REPORT)]
+    Report(report::ReportArgs),
+    /// Write the script that makes a shell complete the words of this program
+    Completions(manners::CompletionArgs),
+    /// Write manual pages, of the program and of each subcommand
+    Man(manners::ManArgs),
     /// Draw what the tables hold: SVG, PNG and CSV of each figure
     #[cfg(feature = "plot")]
+    #[command(after_help = examples::PLOT)]
     Plot(figures::PlotArgs),
     /// Draw points of a CSV file, as `airlight study` writes it: SVG and PNG beside it
     #[cfg(feature = "plot")]
+    #[command(after_help = examples::CHART)]
     Chart(figures::ChartArgs),
     /// Compute how far numbers that should agree do not: CSV, and SVG and PNG of each study
     #[cfg(feature = "study")]
+    #[command(after_help = examples::STUDY)]
     Study(figures::StudyArgs),
 }
 
@@ -69,7 +90,7 @@ struct BuildArgs {
     /// Write nothing: rebuild in memory, compare value by value, and fail if anything differs
     #[arg(long)]
     check: bool,
-    /// Only the tables whose file name contains this; may be given more than once
+    /// Only the tables whose file name contains this; may be given more than once [default: all]
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
     /// Factor on the tolerances of averages over particle sizes, 0.001 to 1000. With 1, cross-sections and g to 1e-6 and phase
@@ -118,6 +139,9 @@ pub(crate) fn run() -> ExitCode {
         Command::Mie(args) => mie::solve(&args),
         Command::Biomes(args) => aerosol::biomes(&args),
         Command::Lint(args) => return lint::run(&args),
+        Command::Report(args) => report::write(&args),
+        Command::Completions(args) => output::print(&manners::completions::<Cli>(args.shell)),
+        Command::Man(args) => man(&args),
         #[cfg(feature = "plot")]
         Command::Plot(args) => figures::draw(&args),
         #[cfg(feature = "plot")]
@@ -132,6 +156,15 @@ pub(crate) fn run() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Writes the manual pages.
+fn man(args: &manners::ManArgs) -> Result<(), String> {
+    let written = manners::put_pages::<Cli>(args.folder.as_deref(), tables::file::replace);
+    for path in written.map_err(|(path, error)| format!("{}: cannot be written: {error}", path.display()))? {
+        output::print(format!("{}\n", path.display()).as_bytes())?;
+    }
+    Ok(())
 }
 
 /// A line on standard error. That nobody reads it is no reason to fail.
@@ -212,8 +245,31 @@ mod tests {
     use clap::CommandFactory;
 
     #[test]
-    fn the_arguments_are_consistent() {
+    fn every_flag_with_a_value_says_what_holds_without_it() {
         Cli::command().debug_assert();
+        let mut silent: Vec<String> = Vec::new();
+        for command in Cli::command().get_subcommands().flat_map(|command| {
+            let below: Vec<_> = command.get_subcommands().cloned().collect();
+            if below.is_empty() { vec![command.clone()] } else { below }
+        }) {
+            let flags = command.get_arguments().filter(|arg| !arg.is_positional() && !arg.is_required_set());
+            for flag in flags.filter(|flag| flag.get_action().takes_values()) {
+                let help = flag.get_help().map(ToString::to_string).unwrap_or_default();
+                let told = !flag.get_default_values().is_empty() || help.contains("default");
+                if !told {
+                    silent.push(format!("{} --{}: {help}", command.get_name(), flag.get_id()));
+                }
+            }
+        }
+        assert!(silent.is_empty(), "{silent:#?}");
+    }
+
+    #[test]
+    fn every_command_has_examples() {
+        for command in Cli::command().get_subcommands() {
+            let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            assert!(help.contains("Example"), "{}: {help}", command.get_name());
+        }
     }
 
     #[test]

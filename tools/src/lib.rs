@@ -3,7 +3,7 @@
 //! [`raw`] reads the sources and converts them to SI; [`molecular`] and [`profile`] compute;
 //! [`build`] writes the tables, and [`own`] some of people's own files; [`data`] reads them again, [`mod@column`] says
 //! what they mean over one place, [`inspect`] puts one into words, [`coefficients`] and [`export`] give out numbers as a
-//! [`sheet`] with its [`sources`], [`lint`] judges tables and CSV files; `study` compares and `plot` draws what the
+//! [`sheet`] with its [`sources`], [`lint`] judges tables and CSV files; [`report`] puts all that there is to look at into one page; `study` compares and `plot` draws what the
 //! tables hold, each behind a feature of its name.
 
 pub mod aerosol;
@@ -31,6 +31,7 @@ pub mod profile;
 pub mod programs;
 pub mod raw;
 pub mod records;
+pub mod report;
 pub mod sheet;
 pub mod sources;
 pub mod stability;

@@ -2,8 +2,11 @@
 
 use super::{Component, Haze, Medium, MediumError};
 use crate::data::Data;
+use crate::geometry::{Place, Shape};
 use crate::phase::Phase;
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use tables::units::EARTH_RADIUS_M;
 use tables::views::{OzoneCrossSection, OzoneProfile, REFERENCE_WAVELENGTH_NM, Rayleigh, StandardAtmosphere};
 use tables::{Axis, Curve, Interpolation, Outside, Scale, TableError};
 
@@ -75,6 +78,17 @@ pub enum AirError {
         /// Visibility of molecules alone.
         clean_km: f64,
     },
+}
+
+/// Vertical optical depths (1) between the ground and the top of a scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Depths {
+    /// Of scattering by molecules.
+    pub molecules: f64,
+    /// Of absorption by ozone.
+    pub ozone: f64,
+    /// Of scattering and absorption by aerosol.
+    pub aerosol: f64,
 }
 
 /// Molecules and ozone against altitude, before any wavelength is chosen.
@@ -161,6 +175,35 @@ impl Air {
         Ok(column * self.rayleigh.cross_section_m2.at(REFERENCE_WAVELENGTH_NM)?)
     }
 
+    /// Vertical optical depths between the ground and the top at a wavelength in nm: of each component its column times its
+    /// cross-section, by [`Medium::columns`].
+    ///
+    /// # Errors
+    /// [`AirError`] for a wavelength outside the tables.
+    pub fn depths(&self, wavelength_nm: f64) -> Result<Depths, AirError> {
+        let medium = self.medium(&[wavelength_nm])?;
+        let columns = medium.columns(SPHERE, Place::above(0.0), DVec3::Z).unwrap_or_default();
+        let of =
+            |(component, column): (&Component<1>, &f64)| column * (component.scattering[0] + component.absorption[0]);
+        let depths: Vec<f64> = medium.components().iter().zip(&columns).map(of).collect();
+        // In the order of `medium`.
+        let (gases, aerosol) = depths.split_at(1 + self.ozone.len());
+        Ok(Depths { molecules: gases[0], ozone: gases[1..].iter().sum(), aerosol: aerosol.iter().sum() })
+    }
+
+    /// Air mass: the column of molecules from `place` along the unit `direction` to the top over that along the vertical of the place, 1 for the
+    /// zenith. Rays are straight, without refraction, between spheres or, if `flat`, planes. `None` where the planet is in the way or no air is above.
+    ///
+    /// # Errors
+    /// [`AirError`] if the tables do not reach.
+    pub fn air_mass(&self, flat: bool, place: Place, direction: DVec3) -> Result<Option<f64>, AirError> {
+        let medium = self.medium(&[REFERENCE_WAVELENGTH_NM])?;
+        let shape = if flat { Shape::Flat } else { SPHERE };
+        let column = |direction: DVec3| medium.columns(shape, place, direction).map(|columns| columns[0]);
+        let overhead = column(place.up).filter(|overhead| *overhead > 0.0);
+        Ok(overhead.and_then(|overhead| Some(column(direction)? / overhead)))
+    }
+
     /// Vertical ozone column in Dobson units.
     #[must_use]
     pub fn ozone_du(&self) -> f64 {
@@ -211,6 +254,9 @@ impl Air {
     }
 }
 
+/// The planet.
+const SPHERE: Shape = Shape::Sphere { radius_m: EARTH_RADIUS_M };
+
 /// The King factor F_k = (6 + 3 rho) / (6 - 7 rho) by which depolarisation raises the cross-section, from gamma = rho / (2 - rho)
 /// (Bucholtz 1995, equations 5 and 12).
 fn king_factor(gamma: f64) -> f64 {
@@ -259,4 +305,53 @@ fn ozone_terms(
     let [a, b, c] = terms;
     let curve = |values| Curve::new(axis.clone(), Scale::Linear, values);
     Ok([curve(a)?, curve(b)?, curve(c)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::direction_at;
+    use std::path::Path;
+    use tables::units::KM;
+
+    fn air() -> Air {
+        let data = Data::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../data")).expect("tables");
+        let settings = AirSettings {
+            month: 6,
+            latitude_deg: 45.0,
+            ozone_source: OzoneSource::McPetersLabow,
+            ozone_du: Some(300.0),
+            top_m: 120.0 * KM,
+            depolarisation: Depolarisation::Measured,
+        };
+        Air::new(&data, &settings).expect("air")
+    }
+
+    #[test]
+    fn optical_depths_are_those_of_the_columns() {
+        let depths = air().depths(550.0).expect("in range");
+        // Bucholtz 1995, table 3, has 0.0971 for the standard atmosphere. 300 DU of 2.687e20 m^-2 each times 3.4e-25 m^2 (Serdyuchenko
+        // et al. 2014, 550 nm, 223 K) are 0.027; warmer and colder layers are within 3 % of it.
+        assert!((depths.molecules / 0.0971 - 1.0).abs() < 2e-3, "{depths:?}");
+        assert!((depths.ozone / 0.0270 - 1.0).abs() < 0.05, "{depths:?}");
+        assert_eq!(depths.aerosol, 0.0);
+    }
+
+    #[test]
+    fn air_mass_is_the_secant_high_up_and_that_of_kasten_and_young_lower_down() {
+        let air = air();
+        let at = |elevation: f64| {
+            air.air_mass(false, Place::above(0.0), direction_at(0.0, elevation.to_radians())).expect("in range")
+        };
+        assert!((at(90.0).expect("above") - 1.0).abs() < 1e-12);
+        // Kasten & Young 1989, equation 3, whose rays are refracted.
+        for (elevation, published, tolerance) in [(30.0, 1.9943, 2e-3), (10.0, 5.586, 5e-3)] {
+            let found = at(elevation).expect("above");
+            assert!((found / published - 1.0).abs() < tolerance, "{elevation}: {found}");
+        }
+        assert_eq!(at(-1.0), None);
+        let flat = air.air_mass(true, Place::above(0.0), direction_at(0.0, 5.0_f64.to_radians())).expect("in range");
+        assert!((flat.expect("above") * 5.0_f64.to_radians().sin() - 1.0).abs() < 1e-9, "{flat:?}");
+        assert_eq!(air.air_mass(false, Place::above(200.0 * KM), DVec3::Z).expect("in range"), None);
+    }
 }

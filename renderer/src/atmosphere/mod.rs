@@ -11,7 +11,7 @@ mod haze;
 mod lookup;
 mod medium;
 
-pub use air::{Air, AirError, AirSettings, Depolarisation, OzoneSource};
+pub use air::{Air, AirError, AirSettings, Depolarisation, Depths, OzoneSource};
 pub use columns::{Chord, Columns, Point, Tolerance};
 pub use haze::{Amount, Haze, HazePhase, HazeSettings, KOSCHMIEDER};
 pub(crate) use medium::GAUSS_4;

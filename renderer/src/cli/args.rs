@@ -1,10 +1,11 @@
 //! Flags, and how they change a scene.
 
-use super::words::{Asked, BiomeName, OzoneName, PhaseName, RenderMethod, Switch, asked, biome, pixel, share, time};
+use super::words::{
+    Asked, BiomeName, OzoneName, PhaseName, RenderMethod, ShardName, Switch, asked, biome, pixel, shard, share, time,
+};
 use crate::atmosphere::Depolarisation;
 use crate::film::{Tone, White};
 use crate::plan::Metric;
-use crate::render::Shard;
 use crate::scene::{Albedo, CameraKind, Moment, Scene, SceneError, SunShape, word};
 use crate::spectrum::{Scheme, Wavelengths};
 use crate::transport::Fineness;
@@ -20,13 +21,13 @@ pub(super) struct RenderArgs {
     /// Scene to start from: TOML (`airlight scene new`), JSON, or the EXR file of a picture, which carries it; flags override it
     #[arg(value_name = "SCENE")]
     pub scene: Option<PathBuf>,
-    /// Start from a scene of the gallery instead: `airlight scene new --list` lists them
+    /// Start from a scene of the gallery instead: `airlight scene new --list` lists them [default: none]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["scene", "resume"], help_heading = "Files")]
     pub preset: Option<String>,
     #[command(flatten)]
     pub files: PictureArgs,
     /// A table of your own (`airlight-tools import`): it replaces, for this picture, the one of its kind in --data, or
-    /// adds a ground for --albedo; once for each kind. Those of the scene are then left out
+    /// adds a ground for --albedo; once for each kind. Those of the scene are then left out [default: those of the scene]
     #[arg(long = "table", value_name = "FILE", help_heading = "Files")]
     pub tables: Vec<String>,
     /// Keep solved tables in this folder, by a checksum of all that they depend on, and take them from there: another sun, observer
@@ -37,7 +38,7 @@ pub(super) struct RenderArgs {
     /// [default: none; with --shard the picture's name with .state, with --resume its file]
     #[arg(long, value_name = "FILE", help_heading = "Files")]
     pub checkpoint: Option<PathBuf>,
-    /// Go on with the run whose state is in this file; more samples may be asked for, the scene stays
+    /// Go on with the run whose state is in this file; more samples may be asked for, the scene stays [default: a new run]
     #[arg(long, value_name = "FILE", conflicts_with = "scene", help_heading = "Files")]
     pub resume: Option<PathBuf>,
 
@@ -58,7 +59,7 @@ pub(super) struct RenderArgs {
     pub spp: Option<u32>,
     /// Go on until sqrt(mean squared standard error) over mean radiance, the solar disc left
     /// out, is at most this, 1e-5 to 1: 1% or 0.01; 16 blocks of each pixel at least. With --auto, and of a plan, the error
-    /// that the picture is to have at most
+    /// that the picture is to have at most [default: the samples of --spp, whatever the error]
     #[arg(long, value_name = "E", value_parser = asked, help_heading = "Sampling")]
     pub error: Option<Asked>,
     /// Plan: take the cheapest method, grid and wavelengths that meet --error by stored measurements (`airlight plan` says which and why),
@@ -70,16 +71,18 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "METRIC", requires = "error", help_heading = "Sampling")]
     pub metric: Option<Metric>,
     /// Go on for so long, 1s to 1000h, in whole passes over the picture, two blocks of each pixel at least: 30s, 5m or
-    /// 1.5h. The picture tells how many samples that were, so that it can be repeated
+    /// 1.5h. The picture tells how many samples that were, so that it can be repeated [default: no limit]
     #[arg(long, value_name = "T", value_parser = time, help_heading = "Sampling")]
     pub time: Option<Duration>,
     /// Samples of a block, a power of two from 1 to 1024. Those of one block are spread evenly (Sobol), and errors come
     /// from the spread of blocks; 1 is pure chance [default: so that there are 16 blocks, at most 64; 4 with --time]
     #[arg(long, value_name = "N", help_heading = "Sampling")]
     pub block: Option<u32>,
-    /// Make part I of N of the picture, for `airlight merge`: every Nth block of the samples (--spp counts the whole)
-    #[arg(long, value_name = "I/N", help_heading = "Sampling")]
-    pub shard: Option<Shard>,
+    /// Make part I of N of the picture, for `airlight merge`: every Nth block of the samples (--spp counts the whole), N up to 65536. With env
+    /// the launcher says which: an array of Slurm, srun, mpirun; names of files then end in -I-of-N, as the default name always does
+    /// [default: the whole picture]
+    #[arg(long, value_name = "I/N|env", value_parser = shard, help_heading = "Sampling")]
+    pub shard: Option<ShardName>,
     /// Seed of the random numbers, 0 to 2^64 - 1 [default: 0]
     #[arg(long, value_name = "S", help_heading = "Sampling")]
     pub seed: Option<u64>,
@@ -106,7 +109,7 @@ pub(super) struct RenderArgs {
     /// How wavelengths become colour, with any method that has a spectrum; rgb and four bring their own wavelengths [default: spectral]
     #[arg(long, value_name = "SCHEME", help_heading = "Sampling")]
     pub colour: Option<Scheme>,
-    /// Print one sample of this pixel (from the upper left, 0,0) instead of a picture
+    /// Print one sample of this pixel (from the upper left, 0,0) instead of a picture [default: the picture]
     #[arg(long, value_name = "X,Y", value_parser = pixel, help_heading = "Sampling")]
     pub pixel: Option<(u32, u32)>,
     /// Which sample --pixel prints
@@ -158,10 +161,10 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "DEG", help_heading = "Sun, air and ground")]
     pub sun_azimuth: Option<f64>,
     /// An instant that says where the sun stands at --latitude and --longitude, how far it is, and the month:
-    /// 2026-06-21T18:30:00+02:00, or Z for UTC
+    /// 2026-06-21T18:30:00+02:00, or Z for UTC [default: none; the sun is where --sun-elevation has it]
     #[arg(long, value_name = "INSTANT", conflicts_with_all = ["sun_elevation", "sun_azimuth", "sun_distance", "month"], help_heading = "Sun, air and ground")]
     pub date: Option<Moment>,
-    /// Longitude in degrees, east positive, -180 to 180, with --date or --albedo earth
+    /// Longitude in degrees, east positive, -180 to 180, which --date needs, and for --albedo earth [default: 0 there]
     #[arg(long, value_name = "DEG", help_heading = "Sun, air and ground")]
     pub longitude: Option<f64>,
     /// Distance of the sun in astronomical units, 0.9 to 1.1 [default: 1]
@@ -205,16 +208,22 @@ pub(super) struct RenderArgs {
     pub aerosol: AerosolArgs,
 }
 
+/// The picture if no name is given.
+pub(super) const OUTPUT: &str = "sky.exr";
+
 /// What is written of a picture, and from which tables.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Files")]
 pub(super) struct PictureArgs {
-    /// EXR file to write; the PNG has the same name
-    #[arg(short, long, value_name = "FILE", default_value = "sky.exr")]
+    /// EXR file to write; the PNG and the receipt (JSON) have the same name
+    #[arg(short, long, value_name = "FILE", default_value = OUTPUT)]
     pub output: PathBuf,
-    /// Folder of the tables
-    #[arg(long, value_name = "DIR", default_value = "data")]
-    pub data: PathBuf,
+    /// Folder of the tables [default: those that the program carries]
+    #[arg(long, value_name = "DIR")]
+    pub data: Option<PathBuf>,
+    /// Write no receipt (NAME.json) beside the picture; its EXR file holds one either way
+    #[arg(long)]
+    pub no_receipt: bool,
     /// Write the spectral channels too (S0.550,000nm in W m^-2 sr^-1 nm^-1)
     #[arg(long)]
     pub spectral: bool,
@@ -232,6 +241,16 @@ pub(super) struct PictureArgs {
     /// Say nothing but errors
     #[arg(long)]
     pub quiet: bool,
+    /// Print the receipt as JSON instead of words; of plan the plan, of light what is in its JSON file
+    #[arg(long, conflicts_with = "quiet")]
+    pub json: bool,
+}
+
+impl PictureArgs {
+    /// Whether words go to standard output.
+    pub(super) fn talks(&self) -> bool {
+        !self.quiet && !self.json
+    }
 }
 
 /// What kind of aerosol, and how much.
@@ -258,10 +277,10 @@ pub(super) struct AerosolArgs {
     #[arg(long, value_name = "X", conflicts_with_all = ["visibility", "turbidity"])]
     pub aod: Option<f64>,
     /// Amount as visibility at the ground in km, 0.05 to 400: 3.912 over the extinction at 550 nm,
-    /// molecules included
+    /// molecules included [default: as --aod]
     #[arg(long, value_name = "KM", conflicts_with = "turbidity")]
     pub visibility: Option<f64>,
-    /// Amount as a multiple of the type's own, 0 to 1000
+    /// Amount as a multiple of the type's own, 0 to 1000 [default: 1]
     #[arg(long, value_name = "X")]
     pub turbidity: Option<f64>,
 }

@@ -7,7 +7,6 @@ use super::progress::{Line, amount, percent};
 use super::render::{sky, stop_on_interrupt};
 use super::{Failure, Outcome};
 use crate::clock::process_s;
-use crate::data::Data;
 use crate::plan::Metric;
 use crate::render::{
     Achieved, Control, End, Extent, Head, Part, Progress, Shard, Summary, achieved, disc_layer, empty, go_on,
@@ -19,14 +18,15 @@ use std::time::Instant;
 pub(super) fn run(args: &RenderArgs, scene: &Scene, begin: Instant) -> Result<Outcome, Failure> {
     let metric = args.metric.unwrap_or(Metric::Radiance);
     let asked = args.error.map_or(0.01, |error| error.of(metric));
-    let files = Files::new(&args.files.output, None)?;
-    let data = Data::load(&args.files.data).map_err(Failure::error)?;
+    let files = Files::new(&args.files.output, None, !args.files.no_receipt)?;
+    files.announce(&args.files);
+    let data = super::data(args.files.data.as_deref())?;
     let pool = super::pool(args.threads)?;
     let folder = super::made(args.keep_tables.as_deref())?;
     let stop = stop_on_interrupt();
     let mut plan = pool.install(|| super::plan::plan(scene, &data, args, asked))?;
     loop {
-        if !args.files.quiet {
+        if args.files.talks() {
             super::plan::describe(&plan, scene).iter().for_each(|line| println!("{line}"));
         }
         let planned = plan.scene(scene);
@@ -58,13 +58,13 @@ pub(super) fn run(args: &RenderArgs, scene: &Scene, begin: Instant) -> Result<Ou
             && found.fails()
             && let Some(next) = plan.up(scene)
         {
-            if !args.files.quiet {
+            if args.files.talks() {
                 println!("check       {}: a more exact plan", words(found));
             }
             plan = next;
             continue;
         }
-        if found.is_some() && !args.files.quiet {
+        if found.is_some() && args.files.talks() {
             println!("check       {} core-seconds", amount(check_s));
         }
         let end = rendering.end;

@@ -4,7 +4,6 @@ use super::output::println;
 use super::{Failure, Outcome};
 use crate::atmosphere::{Columns, Medium};
 use crate::bench;
-use crate::data::Data;
 use crate::sampling::POINTS;
 use crate::scene::SceneError;
 use crate::transport::Estimator;
@@ -26,9 +25,9 @@ pub(super) struct BenchArgs {
     /// Paths in each direction beside solved tables, or of polarised and of scalar transfer
     #[arg(long, value_name = "N", default_value_t = 8192)]
     pub paths: u64,
-    /// Folder with the tables
-    #[arg(long, value_name = "DIR", default_value = "data")]
-    pub data: PathBuf,
+    /// Folder of the tables [default: those that the program carries]
+    #[arg(long, value_name = "DIR")]
+    pub data: Option<PathBuf>,
     /// Biomes beside which solved tables are put, or in which polarised transfer or certificates are measured: one, none or all
     #[arg(long, value_name = "NAME", default_value = "all")]
     pub biome: String,
@@ -113,7 +112,7 @@ fn name(biome: Option<Biome>) -> &'static str {
 const ONE: [f64; 1] = [450.0];
 
 fn polarised(args: &BenchArgs) -> Result<Outcome, Failure> {
-    let data = Data::load(&args.data).map_err(Failure::error)?;
+    let data = super::data(args.data.as_deref())?;
     let points = u32::try_from(args.paths / 32).unwrap_or(u32::MAX).clamp(1, POINTS as u32);
     println!("one thread; noise as variance, at equal paths");
     let pool = super::pool(Some(1))?;
@@ -158,7 +157,7 @@ fn print_polarised(sun: f64, wavelengths: &str, report: &bench::polarised::Repor
 const ELEVATIONS: [f64; 4] = [60.0, 10.0, -2.0, -5.0];
 
 fn certificates(args: &BenchArgs) -> Result<Outcome, Failure> {
-    let data = Data::load(&args.data).map_err(Failure::error)?;
+    let data = super::data(args.data.as_deref())?;
     println!(
         "one thread, 8 wavelengths; costs of equal errors relative to I over those of certificates of radiance alone"
     );
@@ -183,7 +182,7 @@ fn certificates(args: &BenchArgs) -> Result<Outcome, Failure> {
 const SUNS: [f64; 5] = [60.0, 85.0, 90.0, 92.0, 95.0];
 
 fn solved(args: &BenchArgs) -> Result<Outcome, Failure> {
-    let data = Data::load(&args.data).map_err(Failure::error)?;
+    let data = super::data(args.data.as_deref())?;
     println!(
         "16 wavelengths, {} threads; beside {} paths in each of 54 directions",
         rayon::current_num_threads(),

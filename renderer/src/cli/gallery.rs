@@ -3,8 +3,7 @@
 use super::output::println;
 use super::progress::{Line, duration, percent, size};
 use super::render::stop_on_interrupt;
-use super::{Failure, Outcome, unwritable};
-use crate::data::Data;
+use super::{Failure, Outcome};
 use crate::film::png;
 use crate::gallery::{Exposure, Figure, Made, Work, figures, make};
 use crate::render::{Control, Progress};
@@ -27,9 +26,9 @@ pub(super) struct GalleryArgs {
     /// Pixels of the longer side of each picture of a figure, 16 to 4096 [default: 128 to 640]
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(16..=4096))]
     pub size: Option<u32>,
-    /// Folder of the tables
-    #[arg(long, value_name = "DIR", default_value = "data")]
-    pub data: PathBuf,
+    /// Folder of the tables [default: those that the program carries]
+    #[arg(long, value_name = "DIR")]
+    pub data: Option<PathBuf>,
     /// Keep solved tables in this folder, and take them from there [default: none are kept]
     #[arg(long, value_name = "DIR")]
     pub keep_tables: Option<PathBuf>,
@@ -49,7 +48,7 @@ pub(super) fn run(args: &GalleryArgs) -> Result<Outcome, Failure> {
     }
     super::made(Some(&args.output))?;
     super::made(args.keep_tables.as_deref())?;
-    let data = Data::load(&args.data).map_err(Failure::error)?;
+    let data = super::data(args.data.as_deref())?;
     let pool = super::pool(args.threads)?;
     let (stop, begin) = (stop_on_interrupt(), Instant::now());
     for (index, figure) in wanted.iter().enumerate() {
@@ -66,6 +65,7 @@ pub(super) fn run(args: &GalleryArgs) -> Result<Outcome, Failure> {
             return Ok(Outcome::Interrupted);
         };
         let path = args.output.join(format!("{}.png", figure.name));
+        super::announce(&path, args.quiet);
         let bytes = deliver(&path, &made)?;
         if !args.quiet {
             let time = duration(start.elapsed().as_secs_f64());
@@ -98,7 +98,7 @@ fn counterpart(figure: &Figure) -> String {
 
 fn deliver(path: &Path, made: &Made) -> Result<usize, Failure> {
     let bytes = png::file(made.size, &made.pixels).map_err(Failure::error)?;
-    tables::file::replace(path, &bytes).map_err(|error| unwritable(path, &error))?;
+    super::write(path, &bytes)?;
     Ok(bytes.len())
 }
 

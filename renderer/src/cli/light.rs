@@ -5,12 +5,12 @@ use super::output::{eprintln, println};
 use super::progress::{Line, amount, duration, percent, size};
 use super::render::{sky, stop_on_interrupt};
 use super::words::Switch;
-use super::{Failure, Outcome, unwritable};
+use super::{Failure, Outcome};
 use crate::convention::Program;
-use crate::data::Data;
 use crate::film::{Development, Picture, exr, png, tone};
 use crate::light::solar_angular_radius_at;
-use crate::render::{Control, End, Part, Progress, Shard, Sky, Summary, disc_layer, receipt, render};
+use crate::render::receipt::Facts;
+use crate::render::{Control, End, Part, Progress, Shard, Sky, Summary, disc_layer, render};
 use crate::scene::Scene;
 use crate::spectrum::{linear_srgb, luminance};
 use clap::Args;
@@ -34,8 +34,9 @@ pub(super) struct LightArgs {
 pub(super) fn run(args: &LightArgs) -> Result<Outcome, Failure> {
     let begin = Instant::now();
     super::sequence::refuse_others(&args.render)?;
-    let (scene, files) = (scene(args)?, super::picture::Files::new(&args.render.files.output, None)?);
-    let data = Data::load(&args.render.files.data).map_err(Failure::error)?;
+    let (scene, files) = (scene(args)?, super::picture::Files::new(&args.render.files.output, None, false)?);
+    files.announce(&args.render.files);
+    let data = super::data(args.render.files.data.as_deref())?;
     let pool = super::pool(args.render.threads)?;
     let folder = super::made(args.render.keep_tables.as_deref())?;
     let stop = stop_on_interrupt();
@@ -57,7 +58,17 @@ pub(super) fn run(args: &LightArgs) -> Result<Outcome, Failure> {
     let picture = Picture { film: &rendering.film, disc: &disc, colour: sky.colour() };
     let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(rendering.film.luminances()));
     let parts = [Part { seed: scene.seed, shard: Shard::default() }];
-    let attributes = receipt::receipt(&scene, &sky, &parts, &rendering, (&summary, exposure_ev), (None, None));
+    let facts = Facts {
+        scene: &scene,
+        sky: &sky,
+        parts: &parts,
+        rendering: &rendering,
+        summary: &summary,
+        exposure_ev,
+        verdict: None,
+        achieved: None,
+    };
+    let attributes = facts.attributes().map_err(Failure::error)?;
     let map = exr::encode_map(&picture, args.program.white_luminance(), &attributes).map_err(Failure::error)?;
     let shown = png::encode(&picture, &Development::new(scene.tone, scene.white, sky.sun_white(), exposure_ev))
         .map_err(Failure::error)?;
@@ -66,9 +77,12 @@ pub(super) fn run(args: &LightArgs) -> Result<Outcome, Failure> {
     let json_path = files.exr().with_extension("json");
     let all = [(files.exr(), map.as_slice()), (files.png(), &shown), (&json_path, text.as_bytes())];
     for (path, bytes) in all {
-        tables::file::replace(path, bytes).map_err(|error| unwritable(path, &error))?;
+        super::write(path, bytes)?;
     }
-    if !args.render.files.quiet {
+    if args.render.files.json {
+        super::output::bytes(text.as_bytes());
+    }
+    if args.render.files.talks() {
         describe(args.program, &scene, &told);
         println!("time        {} on {} threads", duration(begin.elapsed().as_secs_f64()), pool.current_num_threads());
         for (index, (path, bytes)) in all.into_iter().enumerate() {

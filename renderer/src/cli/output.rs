@@ -24,6 +24,11 @@ pub(super) fn result(line: Arguments<'_>) {
     note(writeln!(std::io::stdout().lock(), "{line}"));
 }
 
+/// Bytes as they are, on standard output.
+pub(super) fn bytes(bytes: &[u8]) {
+    note(std::io::stdout().lock().write_all(bytes));
+}
+
 /// That nobody reads it is no reason to fail.
 pub(super) fn words(line: Arguments<'_>) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");

@@ -1,31 +1,35 @@
 //! What every command that makes a picture shares: the files that it reads and writes, and what it says of them.
 
-use super::Failure;
 use super::args::PictureArgs;
 use super::output::println;
 use super::progress::{amount, duration, percent, size};
+use super::{Failure, write};
+use crate::clock::{process_s, utc};
 use crate::film::{Development, DiscLayer, Estimate, Picture, exr, png, tone};
 use crate::render::left_out::{LeftOut, Off};
-use crate::render::{Achieved, Head, Part, Rendering, Residual, Shard, Sky, State, Summary, Verdict, receipt};
+use crate::render::receipt::{self, Facts, is_receipt};
+use crate::render::{Achieved, Head, Part, Rendering, Residual, Shard, Sky, State, Summary, Verdict};
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
 use crate::transport::Method;
 use crate::transport::rungs::{Rung, Stated};
 use glam::DVec3;
+use serde_json::json;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 
 /// Where the picture goes, and the state of its run.
 pub(super) struct Files {
     exr: PathBuf,
     png: PathBuf,
+    receipt: Option<PathBuf>,
     state: Option<PathBuf>,
 }
 
 impl Files {
     /// Refuses a name that is not that of an EXR file in a folder that is there, a state under the name of a picture,
-    /// and whatever cannot be written: better now than after the work.
-    pub(super) fn new(exr: &Path, state: Option<&Path>) -> Result<Self, Failure> {
+    /// a receipt in the place of a file that is none, and whatever cannot be written: better now than after the work.
+    pub(super) fn new(exr: &Path, state: Option<&Path>, receipt: bool) -> Result<Self, Failure> {
         let named = |path: &Path, text: &str| Err(Failure::usage(format!("{}: {text}", path.display())));
         if !has_extension(exr, "exr") {
             return named(exr, "the name of the picture must end in .exr");
@@ -33,8 +37,21 @@ impl Files {
         if let Some(state) = state.filter(|state| ["exr", "png"].iter().any(|end| has_extension(state, end))) {
             return named(state, "the name of a picture, not of the state of a run");
         }
-        let files = Self { exr: exr.into(), png: exr.with_extension("png"), state: state.map(Path::to_path_buf) };
-        for path in [Some(files.exr.as_path()), Some(&files.png), state].into_iter().flatten() {
+        let files = Self {
+            exr: exr.into(),
+            png: exr.with_extension("png"),
+            receipt: receipt.then(|| exr.with_extension("json")),
+            state: state.map(Path::to_path_buf),
+        };
+        if let Some(json) = files.receipt.as_ref().filter(|json| std::fs::read(json).is_ok_and(|old| !is_receipt(&old)))
+        {
+            return named(
+                json,
+                "is there and no receipt of a picture: name the picture otherwise, or add --no-receipt",
+            );
+        }
+        let all = [Some(files.exr.as_path()), Some(&files.png), files.receipt.as_deref(), state];
+        for path in all.into_iter().flatten() {
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
             if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
                 return named(folder, "there is no such folder to write to");
@@ -42,6 +59,16 @@ impl Files {
             tables::file::check_writable(path).map_err(|error| super::unwritable(path, &error))?;
         }
         Ok(files)
+    }
+
+    /// Says which files that are there will be replaced, before the work is done that replaces them.
+    pub(super) fn announce(&self, args: &PictureArgs) {
+        let all = [Some(&self.exr), Some(&self.png), self.receipt.as_ref(), self.state.as_ref()];
+        let old = all.into_iter().flatten().filter(|path| path.exists());
+        let old: Vec<String> = old.map(|path| path.display().to_string()).collect();
+        if args.talks() && !old.is_empty() {
+            println!("replaces    {}", old.join(", "));
+        }
     }
 
     /// Where the picture of polarisation goes, if there is one: `NAME-polarisation.png`.
@@ -65,10 +92,6 @@ impl Files {
     pub(super) fn state(&self) -> Option<&Path> {
         self.state.as_deref()
     }
-}
-
-fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    tables::file::replace(path, bytes).map_err(|error| super::unwritable(path, &error))
 }
 
 /// A picture that is ready to be written.
@@ -98,14 +121,17 @@ impl Product<'_> {
         let picture = Picture { film: &rendering.film, disc, colour: sky.colour() };
         let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(rendering.film.luminances()));
         let development = Development::new(scene.tone, scene.white, sky.sun_white(), exposure_ev);
-        let attributes = receipt::receipt(
+        let facts = Facts {
             scene,
             sky,
-            &head.parts,
+            parts: &head.parts,
             rendering,
-            (summary, exposure_ev),
-            (verdict.as_ref(), achieved.as_ref()),
-        );
+            summary,
+            exposure_ev,
+            verdict: verdict.as_ref(),
+            achieved: achieved.as_ref(),
+        };
+        let attributes = facts.attributes().map_err(Failure::error)?;
         let spectral = (args.spectral || scene.polarisation).then(|| scene.wavelengths());
         let exr = exr::encode(&picture, spectral.as_ref().map(Wavelengths::nm), &attributes).map_err(Failure::error)?;
         let png = png::encode(&picture, &development).map_err(Failure::error)?;
@@ -122,7 +148,18 @@ impl Product<'_> {
         if let Some((path, png)) = &polarisation {
             write(path, png)?;
         }
-        if !args.quiet {
+        if files.receipt.is_some() || args.json {
+            let written = [(&files.exr, &exr), (&files.png, &png)].into_iter();
+            let written = written.chain(polarisation.as_ref().map(|(path, png)| (path, png)));
+            let receipt = self.receipt(&facts, written, begin, pool)?;
+            if let Some(path) = &files.receipt {
+                write(path, &receipt)?;
+            }
+            if args.json {
+                super::output::bytes(&receipt);
+            }
+        }
+        if args.talks() {
             describe(scene, sky, summary, rendering, &head.parts);
             if !scene.polarisation && scene.filter_deg.is_none() {
                 describe_left_out(&LeftOut::of(scene, sky.air(), sky.albedo()), sky.is_polarised());
@@ -143,11 +180,38 @@ impl Product<'_> {
             if let Some((path, png)) = &polarisation {
                 println!("            {} ({}, degree and angle of polarisation)", path.display(), size(png.len()));
             }
+            if let Some(path) = &files.receipt {
+                println!("            {} (the receipt)", path.display());
+            }
             if let Some(path) = files.state() {
                 println!("            {} (the state of the run)", path.display());
             }
         }
         Ok(())
+    }
+
+    /// The receipt beside the picture: that of the EXR file, then the files with their checksums, then the time.
+    fn receipt<'f>(
+        &self,
+        facts: &Facts<'_>,
+        written: impl Iterator<Item = (&'f PathBuf, &'f Vec<u8>)>,
+        begin: Instant,
+        pool: &rayon::ThreadPool,
+    ) -> Result<Vec<u8>, Failure> {
+        let mut receipt = facts.json().map_err(Failure::error)?;
+        let files = written.map(|(path, bytes)| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            json!({ "file": name, "size_bytes": bytes.len(), "crc32": format!("{:08x}", crc32fast::hash(bytes)) })
+        });
+        receipt.insert("files".into(), files.collect());
+        let time = json!({
+            "written_utc": utc(SystemTime::now()),
+            "took_s": begin.elapsed().as_secs_f64(),
+            "took_core_s": process_s(),
+            "threads": pool.current_num_threads(),
+        });
+        receipt.insert("time".into(), time);
+        Ok((serde_json::to_string_pretty(&receipt).map_err(Failure::error)? + "\n").into_bytes())
     }
 }
 

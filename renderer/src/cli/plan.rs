@@ -17,9 +17,6 @@ use clap::Args;
 pub(super) struct PlanArgs {
     #[command(flatten)]
     pub render: RenderArgs,
-    /// Write the plan as JSON
-    #[arg(long)]
-    pub json: bool,
 }
 
 pub(super) fn run(args: &PlanArgs) -> Result<Outcome, Failure> {
@@ -27,9 +24,9 @@ pub(super) fn run(args: &PlanArgs) -> Result<Outcome, Failure> {
         return Err(Failure::usage("a plan wants an error: add --error 1%"));
     };
     let scene = super::render::scene(&args.render)?;
-    let data = Data::load(&args.render.files.data).map_err(Failure::error)?;
+    let data = super::data(args.render.files.data.as_deref())?;
     let plan = plan(&scene, &data, &args.render, asked.of(args.render.metric.unwrap_or(Metric::Radiance)))?;
-    if args.json {
+    if args.render.files.json {
         println!("{}", json(&plan, &scene));
     } else {
         describe(&plan, &scene).iter().for_each(|line| println!("{line}"));

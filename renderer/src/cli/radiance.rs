@@ -27,7 +27,7 @@ pub(super) struct RadianceArgs {
     /// Standard error of each case relative to its value (of Q and U to I), 1e-5 to 1: 1% or 0.01 [default: 1%]
     #[arg(long, value_name = "E", value_parser = share, conflicts_with = "spp")]
     pub error: Option<f64>,
-    /// Paths for each case instead, 2 or more
+    /// Paths for each case instead, 2 or more [default: as --error]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..))]
     pub spp: Option<u64>,
     /// Seed of the random numbers, 0 to 2^64 - 1
@@ -55,7 +55,8 @@ pub(super) fn run(args: &RadianceArgs) -> Result<Outcome, Failure> {
     let report = pool.install(|| cases::run(&suite, &settings, &progress));
     line.clear();
     let path = &args.output;
-    tables::file::replace(path, cases::to_csv(&report.answers).as_bytes()).map_err(|e| super::unwritable(path, &e))?;
+    super::announce(path, args.quiet);
+    super::write(path, cases::to_csv(&report.answers).as_bytes())?;
     if !args.quiet {
         describe(&report);
         println!("time        {} on {} threads", duration(line.elapsed().as_secs_f64()), pool.current_num_threads());

@@ -1,19 +1,20 @@
 //! `airlight render`.
 
-use super::args::RenderArgs;
+use super::args::{OUTPUT, RenderArgs};
 use super::output::{eprintln, println};
 use super::picture::{Files, Product, has_extension, read_state};
 use super::progress::{Line, amount, percent};
+use super::words::ShardName;
 use super::{Failure, Outcome};
 use crate::data::Data;
 use crate::film::Film;
 use crate::film::exr;
 use crate::render::{
-    Control, End, Extent, Head, Part, Progress, RenderError, Sky, State, Summary, certify, disc_layer, empty, go_on,
-    receipt, replay,
+    Control, End, Extent, Head, Part, Progress, RenderError, Shard, Sky, State, Summary, certify, disc_layer, empty,
+    go_on, receipt, replay,
 };
 use crate::scene::{Albedo, Scene, SceneError, Spectrum};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -23,10 +24,11 @@ const KEEP_EVERY: Duration = Duration::from_secs(60);
 
 pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     let begin = Instant::now();
+    let shard = shard(args)?;
     let (scene, kept) = match &args.resume {
         Some(path) => {
             let state = read_state(path, &args.tables)?;
-            (resumed(args, &state, path)?, Some(state))
+            (resumed(args, shard, &state, path)?, Some(state))
         }
         None => (scene(args)?, None),
     };
@@ -48,11 +50,12 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     let deadline = args.time.and_then(|time| begin.checked_add(time));
     let part = match kept.as_ref().map(|state| state.head.parts.as_slice()) {
         Some([part]) => *part,
-        _ => Part { seed: scene.seed, shard: args.shard.unwrap_or_default() },
+        _ => Part { seed: scene.seed, shard: shard.unwrap_or_default() },
     };
     let extent = Extent { shard: part.shard, deadline };
-    let files = Files::new(&args.files.output, checkpoint(args).as_deref())?;
-    let data = Data::load(&args.files.data).map_err(Failure::error)?;
+    let (output, checkpoint) = names(args, shard);
+    let files = Files::new(&output, checkpoint.as_deref(), !args.files.no_receipt)?;
+    let data = super::data(args.files.data.as_deref())?;
     let pool = super::pool(args.threads)?;
     let folder = super::made(args.keep_tables.as_deref())?;
     let sky = pool.install(|| sky(&scene, &data, folder))?;
@@ -64,6 +67,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<Outcome, Failure> {
     if let Some((x, y)) = args.pixel {
         return print_sample(&scene, &sky, (x, y), args.sample);
     }
+    files.announce(&args.files);
     let head = Head::new(&scene, &sky, vec![part]);
     let film = start(kept, &scene, &sky, extent, args.resume.as_deref())?;
     let stop = stop_on_interrupt();
@@ -166,13 +170,13 @@ pub(super) fn failure(error: RenderError) -> Failure {
 }
 
 /// The scene of a run that goes on: that of its state, but for what decides when it ends and how it is looked at.
-fn resumed(args: &RenderArgs, state: &State, path: &Path) -> Result<Scene, Failure> {
+fn resumed(args: &RenderArgs, shard: Option<Shard>, state: &State, path: &Path) -> Result<Scene, Failure> {
     let refuse = |text: String| Err(Failure::usage(format!("{}: {text}", path.display())));
     let was = &state.head.scene;
     let [part] = state.head.parts[..] else {
         return refuse("a merged state has no run that could go on: render more seeds or shards and merge them".into());
     };
-    if let Some(shard) = args.shard.filter(|shard| *shard != part.shard) {
+    if let Some(shard) = shard.filter(|shard| *shard != part.shard) {
         return refuse(format!("it is shard {}, not {shard}", part.shard));
     }
     let mut scene = args.scene(was.clone())?;
@@ -190,10 +194,35 @@ fn resumed(args: &RenderArgs, state: &State, path: &Path) -> Result<Scene, Failu
     }
 }
 
-/// Where the state of the run is kept.
-fn checkpoint(args: &RenderArgs) -> Option<std::path::PathBuf> {
-    let beside = || args.shard.map(|_| args.files.output.with_extension("state"));
-    args.checkpoint.clone().or_else(|| args.resume.clone()).or_else(beside)
+/// The shard that is asked for; said if a launcher tells it.
+fn shard(args: &RenderArgs) -> Result<Option<Shard>, Failure> {
+    match args.shard {
+        None => Ok(None),
+        Some(ShardName::Given(shard)) => Ok(Some(shard)),
+        Some(ShardName::Env) => {
+            let told = Shard::of_launcher(&|name| std::env::var(name).ok());
+            let (shard, words) = told.map_err(|error| Failure::usage(format!("--shard env: {error}")))?;
+            if args.files.talks() {
+                println!("shard       {shard}, by {words}");
+            }
+            Ok(Some(shard))
+        }
+    }
+}
+
+/// Where the picture goes, and the state of its run. Shards that a launcher numbers are started with the same words, and those without a name have the
+/// same one: each gets its own.
+fn names(args: &RenderArgs, shard: Option<Shard>) -> (PathBuf, Option<PathBuf>) {
+    let (output, checkpoint) = (&args.files.output, args.checkpoint.as_ref());
+    let of_launcher = args.shard == Some(ShardName::Env);
+    let own = |file: &PathBuf| match shard {
+        Some(shard) if of_launcher || file == Path::new(OUTPUT) => shard.name(file),
+        _ => file.clone(),
+    };
+    let picture = own(output);
+    let beside = shard.map(|_| picture.with_extension("state"));
+    let state = checkpoint.map(own).or_else(|| args.resume.clone()).or(beside);
+    (picture, state)
 }
 
 /// The film to begin with.

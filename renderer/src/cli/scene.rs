@@ -19,7 +19,7 @@ pub(super) enum SceneCommand {
         /// File to write, which must not be there; standard output if none is given
         #[arg(value_name = "FILE.toml")]
         file: Option<PathBuf>,
-        /// Begin with a scene of the gallery
+        /// Begin with a scene of the gallery [default: the default scene]
         #[arg(long, value_name = "NAME")]
         preset: Option<String>,
         /// List the presets, a line each, and write nothing
@@ -31,9 +31,9 @@ pub(super) enum SceneCommand {
         /// Scenes: TOML, JSON, or the EXR files of pictures
         #[arg(value_name = "SCENE", required = true)]
         scenes: Vec<PathBuf>,
-        /// Folder with the tables
-        #[arg(long, value_name = "DIR", default_value = "data")]
-        data: PathBuf,
+        /// Folder of the tables [default: those that the program carries]
+        #[arg(long, value_name = "DIR")]
+        data: Option<PathBuf>,
     },
     /// Show a scene, or that of a picture, as TOML: the keys that are not at their defaults
     Show {
@@ -71,7 +71,7 @@ pub(super) fn run(command: &SceneCommand) -> Result<Outcome, Failure> {
             new(file.as_deref(), &name.as_deref().map_or_else(|| Ok(Scene::default()), preset)?)
         }
         SceneCommand::Check { scenes, data } => {
-            let data = Data::load(data).map_err(Failure::error)?;
+            let data = super::data(data.as_deref())?;
             scenes.iter().try_for_each(|path| check(path, &data)).map(|()| Outcome::Done)
         }
         SceneCommand::Show { scene, all, json } => {

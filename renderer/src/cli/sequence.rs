@@ -6,9 +6,9 @@ use super::picture::has_extension;
 use super::progress::{Line, duration, percent};
 use super::render::{failure, stop_on_interrupt};
 use super::{Failure, Outcome};
-use crate::data::Data;
 use crate::film::{Development, Picture, exr, png};
-use crate::render::{Control, End, Part, RenderError, Shard, Sky, Summary, disc_layer, receipt, render};
+use crate::render::receipt::Facts;
+use crate::render::{Control, End, Part, RenderError, Shard, Sky, Summary, disc_layer, render};
 use crate::scene::{Moment, Scene};
 use crate::sequence::{Course, Sequence, Track, steepest};
 use clap::{Args, ValueEnum};
@@ -26,10 +26,10 @@ pub(super) struct SequenceArgs {
     #[arg(long, value_name = "WHAT", default_value = "sunset", conflicts_with_all = ["vary", "until"], help_heading = "Frames")]
     pub what: CourseName,
     /// Let a key of the scene go from one value to another instead: sun_elevation_deg, sun_azimuth_deg, altitude_km,
-    /// view_azimuth_deg, view_elevation_deg or fov_deg; more than once for more keys
+    /// view_azimuth_deg, view_elevation_deg or fov_deg; more than once for more keys [default: as --what]
     #[arg(long, value_name = "KEY=FROM:TO", conflicts_with = "until", help_heading = "Frames")]
     pub vary: Vec<Track>,
-    /// Go from --date to this instant instead, at most two days later
+    /// Go from --date to this instant instead, at most two days later [default: as --what]
     #[arg(long, value_name = "INSTANT", help_heading = "Frames")]
     pub until: Option<Moment>,
     /// How many frames, 1 to 100000
@@ -53,6 +53,9 @@ pub(super) enum CourseName {
 pub(super) fn run(args: &SequenceArgs) -> Result<Outcome, Failure> {
     let begin = Instant::now();
     refuse_others(&args.render)?;
+    if args.render.files.json {
+        return Err(Failure::usage("--json is for one picture: frames that end in .exr hold their receipts"));
+    }
     let scene = super::render::scene(&args.render)?;
     let course = match (&args.until, args.vary.as_slice(), args.what) {
         (Some(end), ..) => Course::Until(*end),
@@ -63,7 +66,7 @@ pub(super) fn run(args: &SequenceArgs) -> Result<Outcome, Failure> {
     };
     let frames = course.frames(&scene, args.frames as usize)?;
     let names = Names::new(&args.render.files.output)?;
-    let data = Data::load(&args.render.files.data).map_err(Failure::error)?;
+    let data = super::data(args.render.files.data.as_deref())?;
     let pool = super::pool(args.render.threads)?;
     let folder = super::made(args.render.keep_tables.as_deref())?;
     let stop = stop_on_interrupt();
@@ -73,6 +76,10 @@ pub(super) fn run(args: &SequenceArgs) -> Result<Outcome, Failure> {
     line.clear();
     let Some(Sequence { frames, mut sky, solved, table_error }) = prepared else { return Ok(interrupted(0, &names)) };
     let prepared_s = begin.elapsed().as_secs_f64();
+    let old = (0..frames.len()).filter(|index| names.path(*index).exists()).count();
+    if old > 0 && !args.skip_existing && !args.render.files.quiet {
+        println!("replaces    {old} of {} frames", frames.len());
+    }
     let (line, mut made) = (Line::new(args.render.files.quiet), 0_u32);
     for (index, frame) in frames.iter().enumerate() {
         let path = names.path(index);
@@ -85,7 +92,7 @@ pub(super) fn run(args: &SequenceArgs) -> Result<Outcome, Failure> {
             line.clear();
             return Ok(interrupted(index, &names));
         };
-        tables::file::replace(&path, &bytes).map_err(|error| super::unwritable(&path, &error))?;
+        super::write(&path, &bytes)?;
         made += 1;
     }
     line.clear();
@@ -124,7 +131,17 @@ fn encode(
     }
     let summary = Summary::new(sky, scene.seed, stop);
     let parts = [Part { seed: scene.seed, shard: Shard::default() }];
-    let attributes = receipt::receipt(scene, sky, &parts, &rendering, (&summary, exposure_ev), (None, None));
+    let facts = Facts {
+        scene,
+        sky,
+        parts: &parts,
+        rendering: &rendering,
+        summary: &summary,
+        exposure_ev,
+        verdict: None,
+        achieved: None,
+    };
+    let attributes = facts.attributes()?;
     let wavelengths = (args.render.files.spectral || scene.polarisation).then(|| scene.wavelengths());
     Ok(Some(exr::encode(&picture, wavelengths.as_ref().map(|all| all.nm()), &attributes)?))
 }

@@ -32,9 +32,9 @@ pub(super) struct StudyArgs {
     /// [default: renderer/measured/WHAT.csv]
     #[arg(long, value_name = "FILE")]
     pub measured: Option<PathBuf>,
-    /// Folder with the tables
-    #[arg(long, value_name = "DIR", default_value = "data")]
-    pub data: PathBuf,
+    /// Folder of the tables [default: those that the program carries]
+    #[arg(long, value_name = "DIR")]
+    pub data: Option<PathBuf>,
     /// Threads, 1 to 1024 [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -157,14 +157,16 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
     if matches!(args.what, StudyName::Polarisation | StudyName::Atlas) {
         tables::file::check_writable(&measured).map_err(|e| super::unwritable(&measured, &e))?;
     }
-    let data = Data::load(&args.data).map_err(Failure::error)?;
+    let data = super::data(args.data.as_deref())?;
     let line = Line::new(args.quiet);
     let progress = |share: f64| line.show(share, |_| args.what.as_str().to_owned());
     let made = pool.install(|| make(&data, &progress)).map_err(Failure::error)?;
     line.clear();
-    tables::file::replace(&path, &made.bytes).map_err(|e| super::unwritable(&path, &e))?;
+    super::announce(&path, args.quiet);
+    super::write(&path, &made.bytes)?;
     if let Some(bytes) = &made.measured {
-        tables::file::replace(&measured, bytes).map_err(|e| super::unwritable(&measured, &e))?;
+        super::announce(&measured, args.quiet);
+        super::write(&measured, bytes)?;
     }
     if !args.quiet {
         println!("{}", made.rows.join("\n"));
@@ -195,7 +197,8 @@ fn judged() -> Result<(Vec<String>, Chart), String> {
 fn measure_plans(args: &StudyArgs, set: plans::Set, path: &Path, threads: usize) -> Result<Outcome, Failure> {
     const QUICK: usize = 10;
     tables::file::check_writable(path).map_err(|e| super::unwritable(path, &e))?;
-    let data = Data::load(&args.data).map_err(Failure::error)?;
+    super::announce(path, args.quiet);
+    let data = super::data(args.data.as_deref())?;
     let line = Line::new(args.quiet);
     let atmospheres = if args.quick { QUICK } else { set.size().0 };
     let progress = |share: f64| line.show(share, |_| args.what.as_str().to_owned());
@@ -211,7 +214,7 @@ fn measure_plans(args: &StudyArgs, set: plans::Set, path: &Path, threads: usize)
     let known = known.unwrap_or_default();
     let found = plans::measure(&data, (set, atmospheres, known), threads, &progress, &keep).map_err(Failure::error)?;
     line.clear();
-    tables::file::replace(path, found.csv().as_bytes()).map_err(|e| super::unwritable(path, &e))?;
+    super::write(path, found.csv().as_bytes())?;
     if !args.quiet {
         println!("{} scenes of {atmospheres} atmospheres", found.rows.len());
         println!("time        {} on {threads} threads", duration(line.elapsed().as_secs_f64()));

@@ -3,6 +3,7 @@
 use crate::atmosphere::{HazePhase, OzoneSource};
 use crate::cases::Tier;
 use crate::plan::Metric;
+use crate::render::Shard;
 use crate::scene::word;
 use crate::transport::{Estimator, Method};
 use clap::ValueEnum;
@@ -116,6 +117,17 @@ impl From<OzoneName> for OzoneSource {
 pub(super) enum Switch {
     On,
     Off,
+}
+
+/// Which shard: as it is named, or as the launcher says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum ShardName {
+    Given(Shard),
+    Env,
+}
+
+pub(super) fn shard(text: &str) -> Result<ShardName, String> {
+    if text == "env" { Ok(ShardName::Env) } else { text.parse().map(ShardName::Given) }
 }
 
 /// A biome, or none of it.

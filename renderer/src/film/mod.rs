@@ -13,11 +13,13 @@ mod develop;
 pub mod exr;
 pub mod png;
 mod raw;
+mod read;
 pub mod tone;
 pub(crate) mod white;
 
 pub use develop::Development;
 pub use raw::RawError;
+pub use read::Channels;
 pub use tone::Tone;
 pub use white::{Adaptation, White};
 

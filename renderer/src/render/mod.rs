@@ -11,6 +11,7 @@ mod disc;
 mod domes;
 #[cfg(test)]
 mod honesty;
+mod launcher;
 pub mod left_out;
 mod merge;
 pub mod receipt;

@@ -52,6 +52,12 @@ impl Shard {
         count.saturating_mul(self.of).saturating_add(self.offset)
     }
 
+    /// Of how many.
+    #[must_use]
+    pub fn of(self) -> u32 {
+        self.of
+    }
+
     /// How many of the first `blocks` blocks are this shard's.
     #[must_use]
     pub fn share(self, blocks: u32) -> u32 {

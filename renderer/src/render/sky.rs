@@ -18,6 +18,7 @@ use std::fmt::Debug;
 use std::ops::Range;
 use std::path::Path;
 use tables::units::{EARTH_RADIUS_M, KM};
+use tables::views::Observer;
 use tables::{Curve, Kind, TableError};
 
 /// Everything that is computed once for a picture. All spectra are per unit of the
@@ -37,6 +38,7 @@ pub struct Sky {
     polarised: bool,
     fitted: Option<Fitted>,
     turbidity: f64,
+    observer: Observer,
 }
 
 /// A fitted sky in the place of Airlight's; the sun behind the air is Airlight's own.
@@ -168,6 +170,7 @@ impl Sky {
             polarised,
             fitted,
             turbidity,
+            observer: data.observer.clone(),
         })
     }
 
@@ -359,6 +362,12 @@ impl Sky {
     #[must_use]
     pub fn sun_white(&self) -> [f64; 3] {
         self.fitted.as_ref().map_or(&self.colour, |fitted| &fitted.colour).white()
+    }
+
+    /// The eye that colours are of.
+    #[must_use]
+    pub fn observer(&self) -> &Observer {
+        &self.observer
     }
 
     /// The sun's spectral irradiance above the atmosphere in W m^-2 nm^-1; ones of a fitted sky.

@@ -17,6 +17,12 @@ pub struct Summary {
     pub sky_lux: Estimate,
     /// Luminance of the zenith in cd/m^2.
     pub zenith_cd_m2: Estimate,
+    /// CIE XYZ of the direct sunlight on a level surface; Y is `sun_lux`.
+    pub sun_xyz: [f64; 3],
+    /// CIE XYZ of the light of the sky on a level surface; Y is `sky_lux`.
+    pub sky_xyz: [f64; 3],
+    /// CIE XYZ of the zenith; Y is `zenith_cd_m2`.
+    pub zenith_xyz: [f64; 3],
 }
 
 /// Pixel numbers of the two estimates: no picture has so many pixels.
@@ -40,11 +46,17 @@ impl Summary {
     /// spread is the error, fewer once `stop` is set.
     #[must_use]
     pub fn new(sky: &Sky, seed: u64, stop: &AtomicBool) -> Self {
-        let hemisphere = estimate(sky, (seed, HEMISPHERE), stop, |sampler| overhead(sky.sun_direction(), sampler));
+        let (hemisphere, sky_xyz) =
+            estimate(sky, (seed, HEMISPHERE), stop, |sampler| overhead(sky.sun_direction(), sampler));
+        let (zenith_cd_m2, zenith_xyz) = estimate(sky, (seed, ZENITH), stop, |_| (DVec3::Z, 1.0));
+        let sun_xyz = sky.colour().xyz(&sky.direct_irradiance());
         Self {
-            sun_lux: sky.colour().xyz(&sky.direct_irradiance())[1],
+            sun_lux: sun_xyz[1],
             sky_lux: Estimate { mean: PI * hemisphere.mean, error: PI * hemisphere.error },
-            zenith_cd_m2: estimate(sky, (seed, ZENITH), stop, |_| (DVec3::Z, 1.0)),
+            zenith_cd_m2,
+            sun_xyz,
+            sky_xyz: sky_xyz.map(|value| PI * value),
+            zenith_xyz,
         }
     }
 }
@@ -72,37 +84,40 @@ fn overhead(sun: DVec3, sampler: &mut Sampler) -> (DVec3, f64) {
     (direction, cosine / (0.5 * cosine + 0.5 * PI * near))
 }
 
-/// Mean weighted luminance over the directions that `draw` gives.
+/// Mean weighted luminance over the directions that `draw` gives, and mean weighted XYZ.
 fn estimate(
     sky: &Sky,
     (seed, stream): (u64, u64),
     stop: &AtomicBool,
     draw: impl Fn(&mut Sampler) -> (DVec3, f64) + Sync,
-) -> Estimate {
+) -> (Estimate, [f64; 3]) {
     let (mut count, mut mean, mut squares) = (0.0, 0.0, 0.0);
+    let mut colour = [0.0; 3];
     let most = if sky.is_noiseless() { SOLVED } else { SEQUENCES.1 };
     for first in (0..most).step_by(SEQUENCES.0 as usize) {
         // Collected in order and summed by one thread: the same sum for any number of threads.
-        let luminances: Vec<f64> = (first..first + SEQUENCES.0)
+        let sequences: Vec<[f64; 3]> = (first..first + SEQUENCES.0)
             .into_par_iter()
             .map(|sequence| {
                 let mut factors = vec![0.0; sky.wavelengths()];
-                let sum: f64 = (0..SEQUENCE)
-                    .map(|point| {
-                        let mut sampler = Sampler::sobol(seed, stream, sequence, point as u32);
-                        let (direction, weight) = draw(&mut sampler);
-                        if weight == 0.0 {
-                            return 0.0;
-                        }
-                        sky.radiance(direction, &sampler, &mut factors);
-                        weight * sky.colour().xyz(&factors)[1]
-                    })
-                    .sum();
-                sum / SEQUENCE as f64
+                let mut sum = [0.0; 3];
+                for point in 0..SEQUENCE {
+                    let mut sampler = Sampler::sobol(seed, stream, sequence, point as u32);
+                    let (direction, weight) = draw(&mut sampler);
+                    if weight == 0.0 {
+                        continue;
+                    }
+                    sky.radiance(direction, &sampler, &mut factors);
+                    let xyz = sky.colour().xyz(&factors);
+                    sum.iter_mut().zip(xyz).for_each(|(sum, value)| *sum += weight * value);
+                }
+                sum.map(|sum| sum / SEQUENCE as f64)
             })
             .collect();
-        for y in luminances {
+        for xyz in sequences {
             count += 1.0;
+            let y = xyz[1];
+            colour.iter_mut().zip(xyz).for_each(|(mean, value)| *mean += (value - *mean) / count);
             let deviation = y - mean;
             mean += deviation / count;
             squares += deviation * (y - mean);
@@ -112,7 +127,7 @@ fn estimate(
             break;
         }
     }
-    Estimate { mean, error: (squares / (count * (count - 1.0))).sqrt() }
+    (Estimate { mean, error: (squares / (count * (count - 1.0))).sqrt() }, colour)
 }
 
 #[cfg(test)]

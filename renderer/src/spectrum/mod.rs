@@ -3,9 +3,11 @@
 mod colour;
 mod difference;
 mod scheme;
+mod temperature;
 mod wavelengths;
 
 pub use colour::{Colour, between, linear_srgb, luminance, xyz};
 pub use difference::{ciede2000, lab};
 pub use scheme::Scheme;
+pub use temperature::{ColourTemperature, Locus};
 pub use wavelengths::{MAX_WAVELENGTHS, Packet, SpectrumError, Wavelengths};

@@ -1,6 +1,7 @@
 //! The subcommand `biomes`.
 
 use clap::Args;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 use tables::units::KM;
 use tables::views::{Aerosol, AerosolSource, Biome, REFERENCE_WAVELENGTH_NM};
@@ -15,6 +16,9 @@ pub(super) struct BiomesArgs {
     /// Folder of the tables
     #[arg(long, value_name = "DIR", default_value = "data")]
     data: PathBuf,
+    /// An array of JSON instead of a table in Markdown
+    #[arg(long)]
+    json: bool,
 }
 
 /// Bulk optics of an aerosol at the ground.
@@ -41,9 +45,23 @@ fn at_ground(aerosol: &Aerosol) -> Result<AtGround, tables::TableError> {
     Ok(AtGround { extinction, albedo: scattering / extinction, asymmetry: forward / scattering, angstrom })
 }
 
-/// Prints a table in Markdown.
+/// A row as JSON.
+fn row(biome: Biome, source: &str, ground: &AtGround, depth: f64) -> Value {
+    json!({
+        "biome": biome.name(),
+        "source": source,
+        "extinction_at_ground_550nm_m_1": ground.extinction,
+        "albedo_550nm": ground.albedo,
+        "asymmetry_550nm": ground.asymmetry,
+        "angstrom_440_870nm": ground.angstrom,
+        "optical_depth_550nm": depth,
+    })
+}
+
+/// Prints a table in Markdown, or as JSON.
 pub(super) fn biomes(args: &BiomesArgs) -> Result<(), String> {
     let thesis = AerosolGavin::from_dir(&args.raw_data).map_err(|e| e.to_string())?;
+    let mut rows = Vec::new();
     let mut text = String::from(
         "| biome | source | extinction at the ground, 550 nm (km^-1) | albedo | g | Angstrom exponent 440/870 nm | optical depth, 550 nm |\n\
          |---|---|---|---|---|---|---|\n",
@@ -56,6 +74,7 @@ pub(super) fn biomes(args: &BiomesArgs) -> Result<(), String> {
                 Ok((at_ground(&aerosol)?, aerosol.own_optical_depth()?))
             };
             let (ground, depth) = read().map_err(|e| e.at(&path).to_string())?;
+            rows.push(row(biome, source.name(), &ground, depth));
             let AtGround { extinction, albedo, asymmetry, angstrom } = ground;
             text += &format!(
                 "| {biome} | {source} | {:.5} | {albedo:.4} | {asymmetry:.4} | {angstrom:.2} | {depth:.4} |\n",
@@ -67,12 +86,19 @@ pub(super) fn biomes(args: &BiomesArgs) -> Result<(), String> {
         let height = had
             .scale_height
             .map_or(top, |h| h * (1.0 - (-top / h).exp()) + top * had.background_density / had.base_density);
+        let (extinction, albedo) = (had.ground_extinction, had.albedo);
+        // It had one asymmetry, and one wavelength.
+        let ground = AtGround { extinction, albedo, asymmetry: 0.76, angstrom: f64::NAN };
+        rows.push(row(biome, "thesis", &ground, had.ground_extinction * height));
         text += &format!(
             "| {biome} | thesis | {:.5} | {:.4} | 0.76 | | {:.3} |\n",
             had.ground_extinction * KM,
             had.albedo,
             had.ground_extinction * height
         );
+    }
+    if args.json {
+        text = serde_json::to_string_pretty(&rows).map_err(|e| e.to_string())? + "\n";
     }
     super::output::print(text.as_bytes())
 }

@@ -174,6 +174,9 @@ pub(super) fn chart(args: &ChartArgs) -> Result<(), String> {
                 let mut path = stem.clone();
                 path.push(format!(".{ending}"));
                 let path = PathBuf::from(path);
+                if !args.quiet {
+                    super::output::announce(&path);
+                }
                 tables::file::replace(&path, &bytes.map_err(|e| e.to_string())?)
                     .map_err(|e| format!("{}: cannot be written: {e}", path.display()))?;
                 if !args.quiet {

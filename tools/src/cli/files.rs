@@ -164,6 +164,7 @@ pub(super) struct SourcesArgs {
     #[arg(long, value_name = "FORMAT", default_value = "text", value_parser = ["text", "csv", "json"])]
     format: String,
     /// Folder of the measured inputs: compare each with its checksum in the tables, and fail if one differs
+    /// [default: not compared]
     #[arg(long, value_name = "DIR")]
     raw_data: Option<PathBuf>,
 }

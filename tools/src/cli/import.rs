@@ -63,27 +63,27 @@ enum KindArgs {
 #[derive(Args)]
 struct AerosolArgs {
     /// CSV of log-normal modes: median_radius_um|nm, sigma_g, number_density_cm3|m3 or number_share, possibly
-    /// smallest_radius_um, largest_radius_um and material
+    /// smallest_radius_um, largest_radius_um and material [default: --sizes instead]
     #[arg(long, value_name = "CSV", required_unless_present = "sizes", conflicts_with = "sizes")]
     modes: Option<PathBuf>,
     /// CSV of a measured size distribution: radius_um|nm or diameter, and dn_dlogr_cm3 (decadic), dn_dlnr_cm3 or
-    /// dn_dr_cm3_um
+    /// dn_dr_cm3_um [default: --modes instead]
     #[arg(long, value_name = "CSV")]
     sizes: Option<PathBuf>,
     /// CSV of a refractive index n + ik: wavelength_nm|um over all of 300 to 1000 nm, n, k >= 0; once for each material of
     /// the modes
     #[arg(long, value_name = "[MATERIAL=]CSV", required = true)]
     index: Vec<String>,
-    /// Scale height in km, 0.05 to 99 (99: constant), of exp(-z / KM) from the ground to --top
+    /// Scale height in km, 0.05 to 99 (99: constant), of exp(-z / KM) from the ground to --top [default: --profile instead]
     #[arg(long, value_name = "KM", requires = "top", required_unless_present = "profile")]
     scale_height: Option<f64>,
-    /// Where the aerosol ends, in km, 0.05 to 120
+    /// Where the aerosol ends, in km, 0.05 to 120 [default: as --profile has it]
     #[arg(long, value_name = "KM", requires = "scale_height")]
     top: Option<f64>,
-    /// CSV of a vertical profile instead: altitude_m|km, and number_density_cm3|m3 or relative
+    /// CSV of a vertical profile instead: altitude_m|km, and number_density_cm3|m3 or relative [default: --scale-height instead]
     #[arg(long, value_name = "CSV", conflicts_with = "scale_height")]
     profile: Option<PathBuf>,
-    /// Particles per cm3 at the ground, 1e-6 to 1e7, where the modes are shares or to scale measured sizes
+    /// Particles per cm3 at the ground, 1e-6 to 1e7, where the modes are shares or to scale measured sizes [default: that of the files]
     #[arg(long, value_name = "CM-3")]
     number_density: Option<f64>,
     /// Name of the aerosol
@@ -102,7 +102,7 @@ struct OzoneArgs {
     /// Latitude in degrees, north positive, -90 to 90, of the climatology above the last level
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     latitude: f64,
-    /// Scale all of it to this column in Dobson units, 1 to 1000
+    /// Scale all of it to this column in Dobson units, 1 to 1000 [default: as measured]
     #[arg(long, value_name = "DU")]
     column: Option<f64>,
     /// The altitudes are geopotential
@@ -113,6 +113,9 @@ struct OzoneArgs {
 /// Makes a table of somebody's own input.
 pub(super) fn import(args: &ImportArgs) -> Result<(), String> {
     let made = table(args)?;
+    if !args.quiet {
+        super::output::announce(&args.output);
+    }
     let bytes = made.write(&args.output).map_err(|e| e.at(&args.output).to_string())?;
     if !args.quiet {
         for note in &made.notes {

@@ -1,9 +1,66 @@
 //! What a picture says about how it was made.
 
+mod json;
+
+pub use json::is_receipt;
+
 use super::left_out::LeftOut;
 use super::{Achieved, End, Part, Rendering, Sky, Summary, Verdict};
+use crate::atmosphere::AirError;
 use crate::film::exr::Attribute;
 use crate::scene::Scene;
+use serde_json::{Map, Value};
+
+/// What there is to say of a picture.
+#[derive(Debug, Clone, Copy)]
+pub struct Facts<'a> {
+    /// What it is of.
+    pub scene: &'a Scene,
+    /// What it was made from.
+    pub sky: &'a Sky,
+    /// The seeds and shards whose samples it has.
+    pub parts: &'a [Part],
+    /// Its samples.
+    pub rendering: &'a Rendering,
+    /// Light at the observer's place.
+    pub summary: &'a Summary,
+    /// Exposure of the PNG, EV at ISO 100.
+    pub exposure_ev: f64,
+    /// What a certificate says of the tables.
+    pub verdict: Option<&'a Verdict>,
+    /// What a planned picture has achieved.
+    pub achieved: Option<&'a Achieved>,
+}
+
+impl Facts<'_> {
+    /// The receipt as JSON: what went in with checksums, optical depths, ozone, air mass, light with its colour temperatures, method, errors, and what was
+    /// left out. Every key has the unit of its number, but for pure numbers, and what is not known is null, with the reason beside it. Equal scenes give equal receipts.
+    ///
+    /// # Errors
+    /// [`AirError`] if a table does not reach a wavelength of the scene, which then has no sky either.
+    pub fn json(&self) -> Result<Map<String, Value>, AirError> {
+        json::receipt(self)
+    }
+
+    /// The attributes of the picture's EXR file, names beginning with `airlight.`: program and version, the scene as JSON
+    /// (`airlight render` reads it), the seeds and shards whose samples it has, one a line, samples, errors, ozone, illuminances, exposure of the PNG, and
+    /// each table with its checksum; with a certificate, the rms error of solved tables and what it is below with 95 % confidence, of Q and U too if the
+    /// picture has them; of a planned picture what was asked of which metric, the rms error in random pixels, and what it is above and below, each with
+    /// 95 % confidence; without
+    /// polarisation, how far that puts luminance and radiance off ([`LeftOut`]), or why it is not known; and the whole receipt ([`RECEIPT`]). No clock, machine or folder.
+    ///
+    /// # Errors
+    /// As [`Facts::json`].
+    pub fn attributes(&self) -> Result<Vec<(String, Attribute)>, AirError> {
+        let text = Value::Object(self.json()?).to_string();
+        let mut attributes = attributes(self);
+        attributes.push((RECEIPT.into(), Attribute::Text(text)));
+        Ok(attributes)
+    }
+}
+
+/// The attribute that holds the receipt.
+pub const RECEIPT: &str = "airlight.receipt";
 
 /// The attribute that holds the scene.
 pub const SCENE: &str = "airlight.scene";
@@ -32,21 +89,9 @@ pub fn tables(sky: &Sky) -> String {
     lines.join("\n")
 }
 
-/// The attributes of a picture's EXR file, names beginning with `airlight.`: program and version, the scene as JSON
-/// (`airlight render` reads it), the seeds and shards whose samples it has, one a line, samples, errors, ozone, illuminances, exposure of the PNG, and
-/// each table with its checksum; with a certificate, the rms error of solved tables and what it is below with 95 % confidence, of Q and U too if the
-/// picture has them; of a planned picture what was asked of which metric, the rms error in random pixels, and what it is above and below, each with
-/// 95 % confidence; without
-/// polarisation, how far that puts luminance and radiance off ([`LeftOut`]), or why it is not known. No clock, machine or folder.
-#[must_use]
-pub fn receipt(
-    scene: &Scene,
-    sky: &Sky,
-    parts: &[Part],
-    rendering: &Rendering,
-    (summary, exposure_ev): (&Summary, f64),
-    (verdict, achieved): (Option<&Verdict>, Option<&Achieved>),
-) -> Vec<(String, Attribute)> {
+/// Everything but the receipt.
+fn attributes(facts: &Facts<'_>) -> Vec<(String, Attribute)> {
+    let Facts { scene, sky, parts, rendering, summary, exposure_ev, verdict, achieved } = *facts;
     let film = &rendering.film;
     let text = |value: String| Attribute::Text(value);
     let block = scene.block();
