@@ -3,7 +3,7 @@
 use super::grid::Suns;
 use super::harmonics::{Moments, RAYLEIGH};
 use super::rays::{Foot, Line, Lines, Node};
-use crate::vectors::add_scaled;
+use crate::vectors::{add_product, add_scaled};
 use std::f32::consts::PI;
 
 /// A diffuse field: all light but the sun's own.
@@ -29,9 +29,6 @@ pub(super) struct Around<'a, const L: usize> {
     pub(super) reflected: [f32; L],
 }
 
-/// Nodes of a level that are worked on together.
-const TOGETHER: usize = 4;
-
 /// The most orders m of cosines.
 const MOST_COSINES: usize = super::harmonics::MOST_DEGREE + 1;
 
@@ -48,27 +45,18 @@ impl<const L: usize> Around<'_, L> {
         let mut radiance = vec![[0.0; L]; self.lines.lines.len() * places];
         let mut linear = vec![[[0.0; L]; 2]; if self.moments.polarised() { radiance.len() } else { 0 }];
         let mut factors = Vec::new();
-        let mut few: [_; TOGETHER] = std::array::from_fn(|_| vec![[[0.0; L]; 3]; suns]);
-        let mut many: [_; TOGETHER] = std::array::from_fn(|_| vec![[[0.0; L]; AZIMUTHS]; suns]);
-        let is_low = |node: &Node<L>| node.harmonics.len() == RAYLEIGH;
-        let alike = self.lines.nodes.chunk_by(|a, b| a.level == b.level && is_low(a) == is_low(b));
-        for nodes in alike.flat_map(|nodes| nodes.chunks(TOGETHER)) {
-            if is_low(&nodes[0]) {
-                self.contract(nodes, field, &mut factors, &mut few);
+        let (mut few, mut many) = (vec![[[0.0; L]; 3]; suns], vec![[[0.0; L]; AZIMUTHS]; suns]);
+        for node in &self.lines.nodes {
+            let radiance = &mut radiance[node.line * places..(node.line + 1) * places];
+            if node.harmonics.len() == RAYLEIGH {
+                self.contract(node, field, &mut factors, &mut few);
+                self.gather(&turns[node.line], node, &few, radiance);
             } else {
-                self.contract(nodes, field, &mut factors, &mut many);
+                self.contract(node, field, &mut factors, &mut many);
+                self.gather(&turns[node.line], node, &many, radiance);
             }
-            for (k, node) in nodes.iter().enumerate() {
-                let places = node.line * places..(node.line + 1) * places;
-                let radiance = &mut radiance[places.clone()];
-                if is_low(node) {
-                    self.gather(&turns[node.line], node, &few[k], radiance);
-                } else {
-                    self.gather(&turns[node.line], node, &many[k], radiance);
-                }
-                if let Some(linear) = linear.get_mut(places) {
-                    self.polarise(&turns[node.line], node, field, linear);
-                }
+            if let Some(linear) = linear.get_mut(node.line * places..(node.line + 1) * places) {
+                self.polarise(&turns[node.line], node, field, linear);
             }
         }
         let mut sum = Gathered::new(self.moments.count(), suns);
@@ -84,46 +72,42 @@ impl<const L: usize> Around<'_, L> {
         (sum.moments, sum.ground)
     }
 
-    /// For each node, all of one level, and for each sun there the sources by cosines of m times the azimuth:
-    /// sum_l S_lm(zenith) b_l I_lm. Each moment is read once for all nodes: a level has more than the fastest memory holds.
+    /// For each sun at the node's level the sources by cosines of m times the azimuth:
+    /// sum_l S_lm(zenith) b_l I_lm.
     #[inline(always)]
     fn contract<const ORDERS: usize>(
         &self,
-        nodes: &[Node<L>],
+        node: &Node<L>,
         field: &Field<L>,
-        factors: &mut Vec<[[f32; L]; TOGETHER]>,
-        rows: &mut [Vec<[[f32; L]; ORDERS]>; TOGETHER],
+        factors: &mut Vec<[f32; L]>,
+        rows: &mut [[[f32; L]; ORDERS]],
     ) {
-        let count = nodes.iter().map(|node| node.harmonics.len()).max().unwrap_or(0);
-        let all = self.moments.count();
+        let (count, all) = (node.harmonics.len(), self.moments.count());
         factors.clear();
-        factors.resize(count, [[0.0; L]; TOGETHER]);
-        for (k, node) in nodes.iter().enumerate() {
-            let sources = self.moments.sources().iter().zip(&node.harmonics);
-            for (factors, (&source, harmonic)) in factors.iter_mut().zip(sources) {
-                factors[k] = node.sources[source].map(|source| source * harmonic);
-            }
+        for (&source, harmonic) in self.moments.sources().iter().zip(&node.harmonics) {
+            factors.push(node.sources[source].map(|source| source * harmonic));
         }
-        let level = &field.moments[nodes[0].level * self.suns.count() * all..][..self.suns.count() * all];
-        for rows in rows.iter_mut() {
-            rows.fill([[0.0; L]; ORDERS]);
-        }
-        let [first, second, third, fourth] = rows;
-        for (sun, moments) in level.chunks_exact(all).enumerate() {
+        let level = &field.moments[node.level * self.suns.count() * all..][..self.suns.count() * all];
+        rows.fill([[0.0; L]; ORDERS]);
+        // Two suns at a time: each factor is read once for both.
+        for (here, rows) in level.chunks(2 * all).zip(rows.chunks_mut(2)) {
+            let (one, other) = here.split_at(all);
             for (m, run) in self.moments.runs(count) {
-                let places = [&mut first[sun][m], &mut second[sun][m], &mut third[sun][m], &mut fourth[sun][m]];
-                let [mut a, mut b, mut c, mut d] = places.each_ref().map(|place| **place);
-                let run = run.start..run.end.min(count);
-                for ([p, q, r, s], moment) in factors[run.clone()].iter().zip(&moments[run]) {
-                    for j in 0..L {
-                        a[j] += p[j] * moment[j];
-                        b[j] += q[j] * moment[j];
-                        c[j] += r[j] * moment[j];
-                        d[j] += s[j] * moment[j];
+                match rows {
+                    [row] => {
+                        for (factor, moment) in factors[run.clone()].iter().zip(&one[run]) {
+                            add_product(&mut row[m], factor, moment);
+                        }
                     }
-                }
-                for (place, sum) in places.into_iter().zip([a, b, c, d]) {
-                    *place = sum;
+                    [row, other_row] => {
+                        let (mut sum, mut other_sum) = (row[m], other_row[m]);
+                        for ((factor, a), b) in factors[run.clone()].iter().zip(&one[run.clone()]).zip(&other[run]) {
+                            add_product(&mut sum, factor, a);
+                            add_product(&mut other_sum, factor, b);
+                        }
+                        (row[m], other_row[m]) = (sum, other_sum);
+                    }
+                    _ => {}
                 }
             }
         }

@@ -56,7 +56,7 @@ impl<const L: usize> Lines<L> {
     pub(super) fn new(setup: &Setup<'_, L>, level: usize, zeniths: &[(f64, f64)]) -> Self {
         let mut nodes = Vec::new();
         let lines = zeniths.iter().enumerate().map(|(i, way)| line(setup, level, (i, *way), &mut nodes)).collect();
-        nodes.sort_by_key(|node| (node.level, node.harmonics.len()));
+        nodes.sort_by_key(|node| node.level);
         Self { lines, nodes }
     }
 }
