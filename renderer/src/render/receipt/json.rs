@@ -122,9 +122,16 @@ fn atmosphere(Facts { scene, sky, .. }: &Facts<'_>) -> Result<Value, AirError> {
 fn light(Facts { scene, sky, summary, .. }: &Facts<'_>) -> Result<Value, AirError> {
     let locus = Locus::new(sky.observer())?;
     let both: [f64; 3] = std::array::from_fn(|i| summary.sun_xyz[i] + summary.sky_xyz[i]);
-    let temperature = |xyz: [f64; 3]| match colourless(scene).map_or_else(|| locus.nearest(xyz), Err) {
-        Ok(ColourTemperature { kelvin, duv }) => json!({ "cct_k": kelvin, "duv": duv }),
-        Err(why) => json!({ "cct_k": null, "duv": null, "unknown": why }),
+    let colour = |xyz: [f64; 3]| {
+        let [x, y] = [0, 1].map(|i| xyz[i] / xyz.iter().sum::<f64>());
+        match colourless(scene).map_or_else(|| locus.nearest(xyz), Err) {
+            Ok(ColourTemperature { kelvin, duv }) => json!({ "x": x, "y": y, "cct_k": kelvin, "duv": duv }),
+            // What is black has no chromaticity: 0 / 0 is null.
+            Err(why) if colourless(scene).is_none() => {
+                json!({ "x": x, "y": y, "cct_k": null, "duv": null, "unknown": why })
+            }
+            Err(why) => json!({ "x": null, "y": null, "cct_k": null, "duv": null, "unknown": why }),
+        }
     };
     let Estimate { mean: sky_lux, error: sky_error } = summary.sky_lux;
     let Estimate { mean: zenith, error: zenith_error } = summary.zenith_cd_m2;
@@ -134,11 +141,11 @@ fn light(Facts { scene, sky, summary, .. }: &Facts<'_>) -> Result<Value, AirErro
         "sky_horizontal_illuminance_standard_error_lux": sky_error,
         "zenith_luminance_cd_m2": zenith,
         "zenith_luminance_standard_error_cd_m2": zenith_error,
-        "colour_temperature_is": "nearest black body in CIE 1960 (u, v), 1000 to 100000 K, within a Duv of 0.05 (CIE 15:2018, 9.5)",
-        "colour_temperature_sun": temperature(summary.sun_xyz),
-        "colour_temperature_sky": temperature(summary.sky_xyz),
-        "colour_temperature_sun_and_sky": temperature(both),
-        "colour_temperature_zenith": temperature(summary.zenith_xyz),
+        "colour_is": "CIE 1931 x and y; cct_k: nearest black body in CIE 1960 (u, v), 1000 to 100000 K, within a Duv of 0.05 (CIE 15:2018, 9.5)",
+        "colour_of_sun": colour(summary.sun_xyz),
+        "colour_of_sky": colour(summary.sky_xyz),
+        "colour_of_sun_and_sky": colour(both),
+        "colour_of_zenith": colour(summary.zenith_xyz),
     }))
 }
 
