@@ -59,6 +59,7 @@ pub(super) struct ExportArgs {
     #[command(flatten)]
     output: OutputArgs,
     /// The air over a place for this program, into the folder --output: phase functions, coefficients and profiles, with their units
+    /// [default: none, a table is written]
     #[arg(long = "for", value_name = "PROGRAM", id = "program", requires = "output", conflicts_with_all = ["format", "bare"],
         value_parser = Program::ALL.map(Program::name), help_heading = "The air for another program")]
     program: Option<String>,
