@@ -79,7 +79,7 @@ for biome, nm in [("none", 450.0), ("rural", 550.0), ("desert-dust", 650.0)]:
             worst = max(worst, abs(a - b) / allowed)
             print(
                 f"{biome:12}{nm:5.0f}{zenith:7.0f}{azimuth:9.0f}   {a:8.3f} +- {da:5.3f}   {b:8.3f} +- {db:5.3f}"
-                f"   {100 * (a / b - 1):+.2f} +- {100 * math.hypot(da, db) / b:.2f} %   {times[0]:8.2f} {times[1]:8.2f}",
+                f"   {100 * (a / b - 1):+.2f} +- {100 * math.hypot(da, db) / b:.2f} %   {times[0]:8.3f} {times[1]:8.3f}",
                 flush=True,
             )
 print(f"largest difference: {worst:.2f} of what is allowed")
