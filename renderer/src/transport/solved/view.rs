@@ -385,6 +385,10 @@ impl<const L: usize> Take<L> for Taker<'_, L> {
 /// Cosine of the sun's zenith angle below which its light may change fast along a line.
 const LOW_SUN: f64 = 0.1;
 
+/// Change of the altitude at which sunlight passes the planet, in one part of a line, as a share of that of the top, and most parts for it.
+const PASSES: f64 = 0.02;
+const MOST_PASSED: f64 = 8.0;
+
 /// Changes of its optical depth that Gauss' rules of two and of four nodes bear (1e-6 and 4e-6), most parts for them, and a
 /// transmittance that does not count.
 const COARSE_DEPTH: f64 = 0.25;
@@ -437,27 +441,34 @@ impl<const L: usize> Sight<'_, L> {
         [(-b - root) / a, (-b + root) / a]
     }
 
-    /// How an interval is integrated: where sunlight grazes the planet, finely enough for what the air leaves of it.
+    /// How an interval is integrated: where the sun is low, finely enough for the altitude at which its light passes the planet, and for
+    /// what the air leaves of it.
     #[inline(always)]
     fn rule(&self, a: f64, b: f64, passes: bool) -> Rule<'_> {
+        let bends = &self.solved.grid.bends;
         let turns = a.abs().min(b.abs()) < 1.0 && a.abs().max(b.abs()) > 2e4;
-        let grazed = self.grazed(a, b);
-        let least = if turns { 3.0 } else { 1.0 };
-        Rule {
-            fine: passes || grazed > COARSE_DEPTH,
-            least: (grazed / FINE_DEPTH).ceil().clamp(least, MOST_GRAZED),
-            bends: &self.solved.grid.bends,
-        }
-    }
-
-    /// How much the optical depth of sunlight changes over an interval, as far as it counts; 0 where the sun is high. Gauss' rule of four
-    /// nodes is off by d^8 T / 1.8e9 of a transmittance that falls by exp(-d) from T: so the change is weighted with T^(1/8).
-    #[inline(always)]
-    fn grazed(&self, a: f64, b: f64) -> f64 {
+        let least = if turns { 3.0_f64 } else { 1.0 };
         let ends = [a + INSET * (b - a), b - INSET * (b - a)].map(|s| self.chord.place(self.from, self.direction, s));
         if ends.iter().all(|place| place.up.dot(self.sun) > LOW_SUN) {
-            return 0.0;
+            return Rule { fine: passes, least, bends };
         }
+        let radius = self.solved.grid.radius;
+        let [at_a, at_b] = ends.map(|place| {
+            let position = place.up * (radius + place.altitude_m);
+            (position - self.sun * position.dot(self.sun)).length()
+        });
+        // Sunlight that passes through a layer with bends changes faster.
+        let step = if bends.is_empty() { PASSES } else { 0.3 * PASSES };
+        let passed = (at_a - at_b).abs() / (step * self.solved.optics.medium.top_m());
+        let grazed = self.grazed(ends);
+        let parts = passed.ceil().min(MOST_PASSED).max((grazed / FINE_DEPTH).ceil().min(MOST_GRAZED));
+        Rule { fine: passes || grazed > COARSE_DEPTH, least: parts.max(least), bends }
+    }
+
+    /// How much the optical depth of sunlight changes between two places, as far as it counts. Gauss' rule of four nodes is off by
+    /// d^8 T / 1.8e9 of a transmittance that falls by exp(-d) from T: so the change is weighted with T^(1/8).
+    #[inline(always)]
+    fn grazed(&self, ends: [Place; 2]) -> f64 {
         let [from, to] = ends.map(|place| self.sunlight.transmittance(place, self.sun).unwrap_or([0.0; L]));
         let mut most = 0.0_f64;
         for (from, to) in from.into_iter().zip(to) {
