@@ -88,6 +88,30 @@ pub fn put_pages<C: CommandFactory>(
     pages.iter().map(put).collect()
 }
 
+/// Flags of a program that take a value and do not say what holds without it, and its commands without examples: both as sentences.
+/// For tests of programs.
+#[must_use]
+pub fn silent<C: CommandFactory>() -> Vec<String> {
+    let command = C::command();
+    let told =
+        |text: Option<&clap::builder::StyledStr>, word: &str| text.is_some_and(|text| text.to_string().contains(word));
+    let without = command.get_subcommands().filter(|one| !told(one.get_after_help(), "Example"));
+    let mut silent: Vec<String> = without.map(|one| format!("{} has no example", one.get_name())).collect();
+    for one in ends(&command) {
+        let flags = one.get_arguments().filter(|flag| !flag.is_positional() && !flag.is_required_set());
+        let flags = flags.filter(|flag| flag.get_action().takes_values() && flag.get_default_values().is_empty());
+        let flags = flags.filter(|flag| !told(flag.get_help(), "default"));
+        silent.extend(flags.map(|flag| format!("{} --{} does not say its default", one.get_name(), flag.get_id())));
+    }
+    silent
+}
+
+/// Commands below one that do something, or itself.
+fn ends(command: &Command) -> Vec<&Command> {
+    let below: Vec<&Command> = command.get_subcommands().flat_map(ends).collect();
+    if below.is_empty() { vec![command] } else { below }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -121,6 +145,13 @@ mod tests {
         assert_eq!(names, ["painter.1", "painter-paint.1", "painter-scene.1", "painter-scene-new.1"]);
         let page = String::from_utf8_lossy(&pages[1].1).into_owned();
         assert!(page.contains("Width in pixels, 1 to 9") && page.contains("painter\\-paint"), "{page}");
+    }
+
+    #[test]
+    fn what_is_not_said_is_found() {
+        let found = silent::<Painter>();
+        let wanted = ["paint has no example", "scene has no example", "paint --width does not say its default"];
+        assert_eq!(found, wanted);
     }
 
     #[test]

@@ -58,16 +58,7 @@ pub(super) fn run(args: &LightArgs) -> Result<Outcome, Failure> {
     let picture = Picture { film: &rendering.film, disc: &disc, colour: sky.colour() };
     let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(rendering.film.luminances()));
     let parts = [Part { seed: scene.seed, shard: Shard::default() }];
-    let facts = Facts {
-        scene: &scene,
-        sky: &sky,
-        parts: &parts,
-        rendering: &rendering,
-        summary: &summary,
-        exposure_ev,
-        verdict: None,
-        achieved: None,
-    };
+    let facts = Facts::new((&scene, &sky), (&parts, &rendering), &summary, exposure_ev);
     let attributes = facts.attributes().map_err(Failure::error)?;
     let map = exr::encode_map(&picture, args.program.white_luminance(), &attributes).map_err(Failure::error)?;
     let shown = png::encode(&picture, &Development::new(scene.tone, scene.white, sky.sun_white(), exposure_ev))

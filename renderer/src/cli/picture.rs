@@ -122,14 +122,9 @@ impl Product<'_> {
         let exposure_ev = scene.exposure_ev.unwrap_or_else(|| tone::automatic_ev(rendering.film.luminances()));
         let development = Development::new(scene.tone, scene.white, sky.sun_white(), exposure_ev);
         let facts = Facts {
-            scene,
-            sky,
-            parts: &head.parts,
-            rendering,
-            summary,
-            exposure_ev,
             verdict: verdict.as_ref(),
             achieved: achieved.as_ref(),
+            ..Facts::new((scene, sky), (&head.parts, rendering), summary, exposure_ev)
         };
         let attributes = facts.attributes().map_err(Failure::error)?;
         let spectral = (args.spectral || scene.polarisation).then(|| scene.wavelengths());

@@ -131,16 +131,7 @@ fn encode(
     }
     let summary = Summary::new(sky, scene.seed, stop);
     let parts = [Part { seed: scene.seed, shard: Shard::default() }];
-    let facts = Facts {
-        scene,
-        sky,
-        parts: &parts,
-        rendering: &rendering,
-        summary: &summary,
-        exposure_ev,
-        verdict: None,
-        achieved: None,
-    };
+    let facts = Facts::new((scene, sky), (&parts, &rendering), &summary, exposure_ev);
     let attributes = facts.attributes()?;
     let wavelengths = (args.render.files.spectral || scene.polarisation).then(|| scene.wavelengths());
     Ok(Some(exr::encode(&picture, wavelengths.as_ref().map(|all| all.nm()), &attributes)?))

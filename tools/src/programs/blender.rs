@@ -39,8 +39,8 @@ fn shares(layers: &Layers, coefficient: impl Fn(usize, usize) -> f64) -> serde_j
 }
 
 const SCRIPT_HEAD: &str = r#"# In Blender: Scripting > Open > Run, or `blender --python air.py`. As a module: material(), plane_layers().
-# Cycles mixes the phase functions of several species alike for red, green and blue. Where that matters (it is some 10 % near a sun in
-# haze), render three grey pictures with channel=0, 1 and 2, which also have their own g, and put them together.
+# Cycles seems to mix the phase functions of several species alike for red, green and blue. Where that matters, in haze, render three grey
+# pictures with channel=0, 1 and 2, which also have their own g, and put them together.
 import json
 
 import bpy

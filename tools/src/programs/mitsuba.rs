@@ -27,18 +27,6 @@ fn scene(layers: &Layers, w: usize) -> Vec<(String, Vec<u8>)> {
         vec![(format!("extinction-{nm}nm.vol"), volume(&extinction)), (format!("albedo-{nm}nm.vol"), volume(&albedo))];
     let phase = phase(layers, w, &nm, &mut files);
     let header: String = layers.header("1 unit = 1 km, extinction in km^-1, phase functions in sr^-1").join("\n     ");
-    let grid = |name: &str, file: &str| {
-        format!(
-            r#"    <volume type="gridvolume" name="{name}">
-      <string name="filename" value="{file}-{nm}nm.vol"/>
-      <boolean name="raw" value="true"/>
-      <transform name="to_world"><scale x="{width}" y="{width}" z="{top}"/><translate x="-{HALF_WIDTH_KM}" y="-{HALF_WIDTH_KM}"/></transform>
-    </volume>
-"#,
-            width = 2.0 * HALF_WIDTH_KM,
-            top = layers.top_km(),
-        )
-    };
     let text = format!(
         r#"<?xml version="1.0" encoding="utf-8"?>
 <!-- {header} -->
@@ -86,8 +74,8 @@ fn scene(layers: &Layers, w: usize) -> Vec<(String, Vec<u8>)> {
   </sensor>
 </scene>
 "#,
-        extinction = grid("sigma_t", "extinction"),
-        albedo = grid("albedo", "albedo"),
+        extinction = grid(layers, "sigma_t", &format!("extinction-{nm}nm.vol")),
+        albedo = grid(layers, "albedo", &format!("albedo-{nm}nm.vol")),
         half = 0.5 * (layers.top_km() + BELOW_KM),
         middle = 0.5 * (layers.top_km() - BELOW_KM),
     );
@@ -109,18 +97,7 @@ fn phase(layers: &Layers, w: usize, nm: &str, files: &mut Vec<(String, Vec<u8>)>
                 if rest > 0.0 { rest / (here + rest) } else { 0.0 }
             };
             let file = format!("beyond-{}-{nm}nm.vol", one.name);
-            let _ = write!(
-                text,
-                r#"    <phase type="blendphase">
-    <volume type="gridvolume" name="weight">
-      <string name="filename" value="{file}"/>
-      <boolean name="raw" value="true"/>
-      <transform name="to_world"><scale x="{width}" y="{width}" z="{top}"/><translate x="-{HALF_WIDTH_KM}" y="-{HALF_WIDTH_KM}"/></transform>
-    </volume>
-"#,
-                width = 2.0 * HALF_WIDTH_KM,
-                top = layers.top_km(),
-            );
+            let _ = write!(text, "    <phase type=\"blendphase\">\n{}", grid(layers, "weight", &file));
             files.push((file, volume(&(0..layers.count).map(share).collect::<Vec<_>>())));
         }
         let values: Vec<String> = one.phase[w].iter().map(|&value| single(value)).collect();
@@ -132,6 +109,19 @@ fn phase(layers: &Layers, w: usize, nm: &str, files: &mut Vec<(String, Vec<u8>)>
     }
     text.push_str(&"    </phase>\n".repeat(last));
     text
+}
+
+/// What a file holds, over the layers.
+fn grid(layers: &Layers, name: &str, file: &str) -> String {
+    let (width, top) = (2.0 * HALF_WIDTH_KM, layers.top_km());
+    format!(
+        r#"    <volume type="gridvolume" name="{name}">
+      <string name="filename" value="{file}"/>
+      <boolean name="raw" value="true"/>
+      <transform name="to_world"><scale x="{width}" y="{width}" z="{top}"/><translate x="-{HALF_WIDTH_KM}" y="-{HALF_WIDTH_KM}"/></transform>
+    </volume>
+"#
+    )
 }
 
 /// A grid of one column of cells in Mitsuba's format, version 3: signature, encoding (1: 32-bit floats), cells along x, y and z, channels,

@@ -32,7 +32,18 @@ pub struct Facts<'a> {
     pub achieved: Option<&'a Achieved>,
 }
 
-impl Facts<'_> {
+impl<'a> Facts<'a> {
+    /// Of a picture without certificate and plan.
+    #[must_use]
+    pub fn new(
+        (scene, sky): (&'a Scene, &'a Sky),
+        (parts, rendering): (&'a [Part], &'a Rendering),
+        summary: &'a Summary,
+        exposure_ev: f64,
+    ) -> Self {
+        Self { scene, sky, parts, rendering, summary, exposure_ev, verdict: None, achieved: None }
+    }
+
     /// The receipt as JSON: what went in with checksums, optical depths, ozone, air mass, light with its colour temperatures, method, errors, and what was
     /// left out. Every key has the unit of its number, but for pure numbers, and what is not known is null, with the reason beside it. Equal scenes give equal receipts.
     ///

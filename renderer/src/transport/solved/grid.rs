@@ -77,6 +77,8 @@ pub(super) struct Grid {
     pub(super) walls: Vec<bool>,
     /// Altitudes in m between levels at which quadratures are divided.
     pub(super) bends: Vec<f64>,
+    /// Altitudes in m of edges of layers, at which sunlight that touches them divides lines.
+    pub(super) edges: Vec<f64>,
     pub(super) suns: Suns,
 }
 
@@ -215,7 +217,9 @@ impl Grid {
             jumps.contains(&h) && below.iter().zip(&above).any(bends)
         };
         let walls = (0..levels.len()).map(is_wall).collect();
-        Self { bends, radius, walls, suns: Suns::new(resolution.suns, radius, medium.top_m()), levels }
+        let suns = Suns::new(resolution.suns, radius, medium.top_m());
+        let edges = jumps.into_iter().take(MOST_EDGES).collect();
+        Self { radius, levels, walls, bends, edges, suns }
     }
 
     /// Radius of a level in m.
@@ -245,6 +249,9 @@ impl Grid {
         all
     }
 }
+
+/// Most edges of layers that divide lines.
+const MOST_EDGES: usize = 8;
 
 /// By which share of itself the scattering coefficient changes at a wall, and by which optical depth of the way to the next level.
 const WALL: (f64, f64) = (0.3, 0.01);

@@ -396,9 +396,6 @@ const FINE_DEPTH: f64 = 3.0;
 const MOST_GRAZED: f64 = 16.0;
 const DIM: f64 = 1e-9;
 
-/// Most edges of layers at which sunlight that touches them divides a line.
-const MOST_LAYERS: usize = 8;
-
 /// Sunlight at an end of an interval, which may be the edge of the shadow, is that so far inside.
 const INSET: f64 = 1e-3;
 
@@ -416,8 +413,7 @@ impl<const L: usize> Sight<'_, L> {
     /// Where the line is divided: at its perigee, at the edge of the planet's shadow, and where the sunlight that arrives touches the edge of a
     /// layer on its way, from where on it is taken from a beam as the root of the distance.
     fn cuts(&self) -> Vec<f64> {
-        let jumps = self.solved.optics.medium.jumps();
-        let touched = jumps.iter().take(MOST_LAYERS).flat_map(|altitude| self.grazes(*altitude));
+        let touched = self.solved.grid.edges.iter().flat_map(|altitude| self.grazes(*altitude));
         let dusk = touched.filter(|s| s.is_finite() && self.position(*s).dot(self.sun) < 0.0);
         let mut cuts: Vec<f64> = self.grazes(0.0).into_iter().chain([0.0]).chain(dusk).collect();
         cuts.sort_by(f64::total_cmp);
