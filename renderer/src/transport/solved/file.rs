@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use tables::{Axis, Field as Values, Kind, Precision, Scale, Table, TableError, Tolerance};
 
 /// Changes with what a solution computes from the same inputs.
-const METHOD: u32 = 4;
+const METHOD: u32 = 5;
 
 /// Hashes what is written to it.
 struct Hashed(DefaultHasher);
@@ -25,13 +25,13 @@ impl Write for Hashed {
     }
 }
 
-/// A hash of all that a solution depends on.
-pub(super) fn key<const L: usize>(optics: &Optics<L>, radius: f64, resolution: &Resolution) -> String {
+/// A hash of all that a solution depends on: its resolution is the last, those before are of the solutions it began from.
+pub(super) fn key<const L: usize>(optics: &Optics<L>, radius: f64, resolutions: &[Resolution]) -> String {
     let mut hashed = Hashed(DefaultHasher::new());
     let Optics { medium, species, albedo, moments, .. } = optics;
     let polarised = moments.polarised();
     let inputs: [&dyn Debug; 8] =
-        [&METHOD, &env!("CARGO_PKG_VERSION"), medium, species, albedo, &polarised, &radius, resolution];
+        [&METHOD, &env!("CARGO_PKG_VERSION"), medium, species, albedo, &polarised, &radius, &resolutions];
     for input in inputs {
         // Hashing does not fail.
         let _ = write!(hashed, "{input:?};");

@@ -235,10 +235,13 @@ pub(super) fn scatter<const L: usize, const DIRECTIONS: usize>(
     scattering: &Scattering<L>,
 ) -> (Vec<[f32; L]>, Vec<[f32; L]>) {
     let suns = &setup.grid.suns;
-    let mut sum = Gathered::new(setup.optics.moments.count(), suns.count());
     let mut light = Light::new(suns.batches::<AZIMUTHS>(), rows(setup));
-    let mut radiance = vec![[0.0; L]; suns.count() * DIRECTIONS];
-    for line in lines {
+    let polarised = setup.optics.moments.polarised();
+    // Of each line.
+    let places = suns.count() * DIRECTIONS;
+    let mut radiance = vec![[0.0; L]; lines.len() * places];
+    let mut linear = Vec::new();
+    for (line, radiance) in lines.iter().zip(radiance.chunks_exact_mut(places)) {
         let steps = steps(setup, level, line.zenith, sunlight);
         let turns = Turns::new::<AZIMUTHS>(line.zenith, suns);
         light.clear();
@@ -246,12 +249,14 @@ pub(super) fn scatter<const L: usize, const DIRECTIONS: usize>(
             light.pass(&turns, sunlight, (i > 0).then(|| &steps[i - 1]), step);
         }
         light.reflect(setup, line, &turns, sunlight);
-        light.arrive::<DIRECTIONS>(setup, line, scattering, &mut radiance);
-        sum.add::<DIRECTIONS>(line, &setup.optics.moments, &radiance);
-        if setup.optics.moments.polarised() {
-            light.polarise(setup, line, &turns);
-            sum.add_linear::<AZIMUTHS>(line, &light.linear);
+        light.arrive::<DIRECTIONS>(setup, line, scattering, radiance);
+        if polarised {
+            light.polarise(setup, line, &turns, &mut linear);
         }
+    }
+    let mut sum = Gathered::of::<DIRECTIONS>(lines, &setup.optics.moments, suns.count(), &radiance);
+    for (line, linear) in lines.iter().zip(linear.chunks_exact(LANES * suns.batches::<AZIMUTHS>())) {
+        sum.add_linear::<AZIMUTHS>(line, linear);
     }
     (sum.moments, sum.ground)
 }
@@ -321,8 +326,6 @@ struct Light<const L: usize> {
     above: Vec<[f32; LANES]>,
     /// By the ground.
     reflected: Vec<[[f32; L]; LANES]>,
-    /// Q and U, of polarised light.
-    linear: Vec<Linear<L>>,
 }
 
 impl<const L: usize> Light<L> {
@@ -331,7 +334,6 @@ impl<const L: usize> Light<L> {
             sums: vec![[[0.0; L]; LANES]; batches * rows],
             above: vec![[0.0; LANES]; batches],
             reflected: vec![[[0.0; L]; LANES]; batches],
-            linear: vec![[[0.0; L]; 2]; batches * LANES],
         }
     }
 
@@ -403,20 +405,20 @@ impl<const L: usize> Light<L> {
         }
     }
 
-    /// Makes Q and U of what molecules scatter.
+    /// Adds Q and U of what molecules scatter to those of other lines.
     #[inline(always)]
-    fn polarise(&mut self, setup: &Setup<'_, L>, line: &Line<L>, turns: &Turns) {
+    fn polarise(&mut self, setup: &Setup<'_, L>, line: &Line<L>, turns: &Turns, linear: &mut Vec<Linear<L>>) {
         let rows = rows(setup);
-        let states = self.sums.chunks_exact(rows).zip(self.linear.as_chunks_mut::<LANES>().0);
-        for (batch, (sums, linear)) in turns.batches.iter().zip(states) {
+        for (batch, sums) in turns.batches.iter().zip(self.sums.chunks_exact(rows)) {
             let shares = batch.sunlight(line.zenith as f32);
-            for (i, (linear, shares)) in linear.iter_mut().zip(shares).enumerate() {
-                *linear = [[0.0; L]; 2];
-                // Sunlight is natural: times beta.
-                for (row, share) in linear.iter_mut().zip(shares) {
-                    add_scaled(row, share, &sums[rows - 1][i]);
+            // Sunlight is natural: times beta.
+            linear.extend(sums[rows - 1].iter().zip(shares).map(|(sum, shares)| {
+                let mut light = [[0.0; L]; 2];
+                for (row, share) in light.iter_mut().zip(shares) {
+                    add_scaled(row, share, sum);
                 }
-            }
+                light
+            }));
         }
     }
 

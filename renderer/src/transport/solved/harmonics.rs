@@ -76,6 +76,12 @@ impl Moments {
         self.apart().unwrap_or(self.degree) + 1
     }
 
+    /// Which of these moments is that moment of others.
+    pub(super) fn place_of(&self, others: &Self, moment: usize) -> Option<usize> {
+        let of = |moments: &Self, i: usize| (moments.pairs[i], moments.twins.iter().any(|(_, twin)| *twin == i));
+        (0..self.count()).find(|&i| of(self, i) == of(others, moment))
+    }
+
     /// The source of degree 2 of all scatterers but molecules, if they have their own.
     pub(super) fn apart(&self) -> Option<usize> {
         (!self.twins.is_empty()).then_some(self.degree + 1)

@@ -31,8 +31,10 @@ mod onward;
 mod orders;
 mod panorama;
 mod rays;
+mod solve;
 mod sources;
 mod species;
+mod start;
 mod tabled;
 #[cfg(test)]
 mod tests;
@@ -45,20 +47,14 @@ pub use panorama::{Panorama, befitting};
 use super::directions;
 use crate::atmosphere::{Columns, Medium, MediumError, Tolerance};
 use crate::geometry::{Place, Shape};
-use crate::vectors::vectorised;
 use aureole::Aureole;
-use first::{Scattering, Sunlight};
 use glam::DVec3;
 use grid::Grid;
 use harmonics::{MOST_DEGREE, Moments, RAYLEIGH};
-use mix::Mixer;
 use onward::Onward;
-use orders::{AZIMUTHS, Around, FEW_AZIMUTHS, Field};
-use pulp::NullaryFnOnce;
-use rayon::prelude::*;
-use rays::{Line, Lines};
+use orders::Field;
+use solve::Setup;
 use species::Species;
-use std::f64::consts::FRAC_1_PI;
 use std::path::Path;
 use std::sync::Arc;
 use tables::TableError;
@@ -90,8 +86,12 @@ pub struct Solved<const L: usize> {
     optics: Arc<Optics<L>>,
     grid: Grid,
     field: Field<L>,
+    /// What of it is the first order, if it is known.
+    first: Option<Field<L>>,
     orders: usize,
     residual: f64,
+    /// The resolutions from whose fields it began, the last last, and its own.
+    resolutions: Vec<Resolution>,
 }
 
 /// An atmosphere without its forward peaks, over a uniform ground.
@@ -167,12 +167,6 @@ impl<const L: usize> Optics<L> {
     }
 }
 
-/// What all parts of the solution share.
-struct Setup<'a, const L: usize> {
-    grid: &'a Grid,
-    optics: &'a Optics<L>,
-}
-
 impl Resolution {
     /// What the renderer takes.
     pub const RENDER: Self = Self { levels: 16, suns: 40, zeniths: [6, 3, 4], parts: 6, degree: 14, change: 5e-4 };
@@ -190,7 +184,10 @@ impl Resolution {
     pub const FINEST: Self = Self { levels: 40, suns: 64, zeniths: [12, 7, 9], parts: 12, degree: 24, change: 1e-4 };
 
     /// Where phase functions have peaks: higher moments want closer directions, layers more levels.
-    fn peaked(self) -> Self {
+    fn about(self, moments: &Moments) -> Self {
+        if moments.degree() <= 2 {
+            return self;
+        }
         Self { levels: self.levels + 4, zeniths: self.zeniths.map(|n| n + n / 2), ..self }
     }
 }
@@ -232,7 +229,7 @@ impl<const L: usize> Tables<L> {
         if usual.error(from, sun, looks) <= error {
             return Ok(usual);
         }
-        let solved = Solved::of(air, &Resolution::FINE, kept)?;
+        let solved = Solved::begun(air, &Resolution::FINE, Some(&usual.solved), kept)?;
         let hidden = solved.optics.in_peaks().map(|share| HIDDEN * share);
         Ok(Self { solved, coarser: usual.solved, hidden })
     }
@@ -280,9 +277,6 @@ pub fn covers_planet(shape: Shape) -> Result<(), SolveError> {
 
 /// Why a resolution is refused.
 const SIZES: &str = "a solved table has at least 4 levels, 4 suns and 1 step between levels, and degrees up to 24";
-
-/// The most orders.
-const MOST_ORDERS: usize = 60;
 
 impl<const L: usize> Solved<L> {
     /// Solves for `medium` over a planet of that shape whose ground has the Lambertian `albedo`.
@@ -332,8 +326,18 @@ impl<const L: usize> Solved<L> {
     /// # Errors
     /// As [`Solved::kept`].
     pub fn of(
+        air: (&Medium<L>, Shape, [f64; L], bool),
+        resolution: &Resolution,
+        kept: Option<&Path>,
+    ) -> Result<Self, SolveError> {
+        Self::begun(air, resolution, None, kept)
+    }
+
+    /// As [`Solved::of`], beginning at the field of another solution.
+    fn begun(
         (medium, shape, albedo, polarised): (&Medium<L>, Shape, [f64; L], bool),
         resolution: &Resolution,
+        from: Option<&Self>,
         kept: Option<&Path>,
     ) -> Result<Self, SolveError> {
         let Shape::Sphere { radius_m } = shape else { return Err(SolveError::Refused(ROUND)) };
@@ -347,7 +351,7 @@ impl<const L: usize> Solved<L> {
         let onward = if polarised { Onward::new(&species, &medium, shape)? } else { Onward::default() };
         let moments = Moments::new(degree, polarised);
         let optics = Optics { moments, species, medium, columns, aureole, onward, albedo };
-        Self::with(Arc::new(optics), radius_m, resolution, kept)
+        Self::with(Arc::new(optics), radius_m, resolution, from, kept)
     }
 
     /// The first order alone, with nothing cut off the phase functions: only [`Solved::radiance`] with `single` is of use.
@@ -363,42 +367,46 @@ impl<const L: usize> Solved<L> {
         let onward = Onward::default();
         let optics = Optics { moments, species, medium, columns, aureole, onward, albedo };
         let field = Field { moments: Vec::new(), ground: Vec::new() };
-        Ok(Self { optics: Arc::new(optics), grid, field, orders: 1, residual: 0.0 })
+        let resolutions = vec![Resolution::FINE];
+        Ok(Self { optics: Arc::new(optics), grid, field, first: None, orders: 1, residual: 0.0, resolutions })
     }
 
     fn with(
         optics: Arc<Optics<L>>,
         radius: f64,
         resolution: &Resolution,
+        from: Option<&Self>,
         kept: Option<&Path>,
     ) -> Result<Self, SolveError> {
-        let fine = if optics.moments.degree() > 2 { resolution.peaked() } else { *resolution };
+        let fine = resolution.about(&optics.moments);
         let grid = Grid::new(&optics.medium, radius, &fine);
-        let solve = || Setup { grid: &grid, optics: &optics }.solve(&fine);
-        let (field, orders, residual) = match kept {
+        let solve = || Setup { grid: &grid, optics: &optics }.solve(&fine, from);
+        let mut resolutions = from.map_or_else(Vec::new, |from| from.resolutions.clone());
+        resolutions.push(*resolution);
+        let ((field, orders, residual), first) = match kept {
             None => solve(),
             Some(folder) => {
-                let (key, moments) = (file::key(&optics, radius, resolution), optics.moments.count());
+                let (key, moments) = (file::key(&optics, radius, &resolutions), optics.moments.count());
                 let path = file::path(folder, &key);
                 if path.exists() {
-                    file::solution(&tables::file::read(&path)?, &grid, moments, &key)
-                        .map_err(|error| error.at(&path))?
+                    let solution = file::solution(&tables::file::read(&path)?, &grid, moments, &key);
+                    (solution.map_err(|error| error.at(&path))?, None)
                 } else {
                     let solution = solve();
-                    tables::file::write(&path, &file::table(&solution, &grid, moments, &key)?)?;
+                    tables::file::write(&path, &file::table(&solution.0, &grid, moments, &key)?)?;
                     solution
                 }
             }
         };
-        Ok(Self { optics, grid, field, orders, residual })
+        Ok(Self { optics, grid, field, first, orders, residual, resolutions })
     }
 
-    /// The same atmosphere solved again, with as many moments, on another grid; or taken from a folder as by [`Solved::kept`].
+    /// The same atmosphere solved again, with as many moments, on another grid, beginning at this field; or taken from a folder as by [`Solved::kept`].
     ///
     /// # Errors
     /// [`SolveError::Kept`], which is none without a folder.
     pub fn again(&self, resolution: &Resolution, kept: Option<&Path>) -> Result<Self, SolveError> {
-        Self::with(Arc::clone(&self.optics), self.grid.radius, resolution, kept)
+        Self::with(Arc::clone(&self.optics), self.grid.radius, resolution, Some(self), kept)
     }
 
     /// Root mean square over 64 directions and all wavelengths of the difference to the radiances of another solution of the same
@@ -460,105 +468,6 @@ impl<const L: usize> Solved<L> {
     }
 }
 
-impl<const L: usize> Setup<'_, L> {
-    /// The field, the orders that it took, and the change that the last of them made.
-    fn solve(&self, resolution: &Resolution) -> (Field<L>, usize, f64) {
-        let levels = self.grid.levels.len();
-        let lines: Vec<_> = (0..levels)
-            .into_par_iter()
-            .map(|level| Lines::new(self, level, &self.grid.zeniths(level, resolution.zeniths)))
-            .collect();
-        let sunlight = Sunlight::new(self, resolution.parts);
-        let scattering = Scattering::new(self);
-        let collect = |at: &(dyn Fn(usize) -> Moved<L> + Sync)| {
-            let mut parts: Vec<_> = (0..levels).into_par_iter().map(at).collect();
-            let ground = std::mem::take(&mut parts[0].1);
-            Field { moments: parts.into_iter().flat_map(|(moments, _)| moments).collect(), ground }
-        };
-        let first = collect(&|level| {
-            vectorised::<L, _>(First {
-                setup: self,
-                level,
-                lines: &lines[level].lines,
-                sunlight: &sunlight,
-                scattering: &scattering,
-            })
-        });
-        let reflected = self.optics.albedo.map(|a| (a * FRAC_1_PI) as f32);
-        let step = |field: &Field<L>| {
-            collect(&|level| {
-                let (moments, suns) = (&self.optics.moments, &self.grid.suns);
-                vectorised::<L, _>(Next { around: Around { lines: &lines[level], moments, suns, reflected }, field })
-            })
-        };
-        let mut mixer = Mixer::new(&first, self.optics.moments.count());
-        let mut field = first.clone();
-        let mut orders = 1;
-        loop {
-            let mut next = step(&field);
-            orders += 1;
-            add(&mut next, &first);
-            let residual = mixer.change(&field, &next);
-            field = mixer.mix(field, next);
-            if residual <= resolution.change || orders >= MOST_ORDERS {
-                return (field, orders, residual);
-            }
-        }
-    }
-}
-
-/// Moments at a level, and irradiance from above.
-type Moved<const L: usize> = (Vec<[f32; L]>, Vec<[f32; L]>);
-
-/// The first order at one level.
-struct First<'a, const L: usize> {
-    setup: &'a Setup<'a, L>,
-    level: usize,
-    lines: &'a [Line<L>],
-    sunlight: &'a Sunlight<L>,
-    scattering: &'a Scattering<L>,
-}
-
-impl<const L: usize> NullaryFnOnce for First<'_, L> {
-    type Output = Moved<L>;
-
-    #[inline(always)]
-    fn call(self) -> Moved<L> {
-        let Self { setup, level, lines, sunlight, scattering } = self;
-        if setup.optics.moments.degree() > 2 {
-            first::scatter::<L, 16>(setup, level, lines, sunlight, scattering)
-        } else {
-            first::scatter::<L, 8>(setup, level, lines, sunlight, scattering)
-        }
-    }
-}
-
-/// Another order at one level.
-struct Next<'a, const L: usize> {
-    around: Around<'a, L>,
-    field: &'a Field<L>,
-}
-
-impl<const L: usize> NullaryFnOnce for Next<'_, L> {
-    type Output = Moved<L>;
-
-    #[inline(always)]
-    fn call(self) -> Moved<L> {
-        if self.around.moments.degree() > 2 {
-            self.around.scatter::<AZIMUTHS>(self.field)
-        } else {
-            self.around.scatter::<FEW_AZIMUTHS>(self.field)
-        }
-    }
-}
-
 fn mean_square(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64
-}
-
-fn add<const L: usize>(field: &mut Field<L>, other: &Field<L>) {
-    let all = field.moments.iter_mut().chain(&mut field.ground).zip(other.moments.iter().chain(&other.ground));
-    for (a, b) in all.flat_map(|(a, b)| a.iter_mut().zip(b)) {
-        *a += b;
-    }
 }

@@ -59,13 +59,12 @@ impl<const L: usize> Around<'_, L> {
                 self.polarise(&turns[node.line], node, field, linear);
             }
         }
-        let mut sum = Gathered::new(self.moments.count(), suns);
         for ((line, turns), radiance) in self.lines.lines.iter().zip(&turns).zip(radiance.chunks_exact_mut(places)) {
             if let Some(foot) = &line.foot {
                 self.reflect(turns, foot, field, radiance);
             }
-            sum.add::<AZIMUTHS>(line, self.moments, radiance);
         }
+        let mut sum = Gathered::of::<AZIMUTHS>(&self.lines.lines, self.moments, suns, &radiance);
         for (line, linear) in self.lines.lines.iter().zip(linear.chunks_exact(places)) {
             sum.add_linear::<AZIMUTHS>(line, linear);
         }
@@ -245,44 +244,83 @@ pub(super) fn azimuth_cosines<const AZIMUTHS: usize>() -> [f32; AZIMUTHS] {
 pub(super) struct Gathered<const L: usize> {
     pub(super) moments: Vec<[f32; L]>,
     pub(super) ground: Vec<[f32; L]>,
-    harmonics: Vec<f64>,
 }
 
 impl<const L: usize> Gathered<L> {
-    pub(super) fn new(moments: usize, suns: usize) -> Self {
-        Self { moments: vec![[0.0; L]; moments * suns], ground: vec![[0.0; L]; suns], harmonics: Vec::new() }
-    }
-
-    /// Adds the radiance (of each sun and so many azimuths) that arrives along a line.
+    /// Of the radiance that arrives along lines: of each in turn that of each sun at so many azimuths, an even number up to
+    /// [`LANES`]; what fills up its batches is left out.
     #[inline(always)]
-    pub(super) fn add<const AZIMUTHS: usize>(&mut self, line: &Line<L>, moments: &Moments, radiance: &[[f32; L]]) {
-        moments.at(line.zenith, &mut self.harmonics);
-        let cosines = azimuth_cosines::<AZIMUTHS>();
-        // Twice for the other half of the circle.
-        let weight = line.weight as f32 * 2.0 * PI / AZIMUTHS as f32;
+    pub(super) fn of<const AZIMUTHS: usize>(
+        lines: &[Line<L>],
+        moments: &Moments,
+        suns: usize,
+        radiance: &[[f32; L]],
+    ) -> Self {
+        let (count, per_line) = (moments.count(), radiance.len() / lines.len().max(1));
+        let mut all = Self { moments: vec![[0.0; L]; count * suns], ground: vec![[0.0; L]; suns] };
         // A rule with so many azimuths would take the low orders of the radiance for higher moments.
         let orders = (moments.degree() + 1).min(AZIMUTHS);
-        let count = moments.count();
-        let mut turned = [[0.0_f32; L]; MOST_COSINES];
-        for (sun, radiance) in radiance.as_chunks::<AZIMUTHS>().0.iter().enumerate().take(self.ground.len()) {
-            turned[..orders].fill([0.0; L]);
-            for (radiance, cosine) in radiance.iter().zip(&cosines) {
-                let (mut before, mut factor) = (*cosine, 1.0_f32);
-                for row in &mut turned[..orders] {
-                    add_scaled(row, factor, radiance);
-                    (before, factor) = (factor, 2.0 * cosine * factor - before);
-                }
-            }
-            let here = &mut self.moments[sun * count..(sun + 1) * count];
-            for (m, run) in moments.runs(moments.count_below(orders)) {
-                let row = turned[m];
-                for i in run {
-                    add_scaled(&mut here[i], weight * self.harmonics[i] as f32, &row);
-                }
-            }
-            if line.zenith > 0.0 {
-                add_scaled(&mut self.ground[sun], weight * line.zenith as f32, &turned[0]);
+        let kept = moments.count_below(orders);
+        // Of each moment what it has of each line; twice for the other half of the circle.
+        let mut shares = vec![0.0; kept * lines.len()];
+        let mut harmonics = Vec::new();
+        let weight = |line: &Line<L>| line.weight as f32 * 2.0 * PI / AZIMUTHS as f32;
+        for (k, line) in lines.iter().enumerate() {
+            moments.at(line.zenith, &mut harmonics);
+            for (shares, harmonic) in shares.chunks_exact_mut(lines.len()).zip(&harmonics) {
+                shares[k] = weight(line) * *harmonic as f32;
             }
         }
+        let waves = waves(azimuth_cosines::<AZIMUTHS>());
+        // Of each order m and line the sum of cos(m phi) times the radiance.
+        let mut turned = vec![[0.0; L]; orders * lines.len()];
+        let here = all.moments.chunks_exact_mut(count).zip(&mut all.ground);
+        for (sun, (here, ground)) in here.enumerate() {
+            for (k, radiance) in radiance.chunks_exact(per_line).enumerate() {
+                let radiance = &radiance[sun * AZIMUTHS..(sun + 1) * AZIMUTHS];
+                // cos(m (pi - phi)) is cos(m phi) or its negative.
+                let mut pairs = [[[0.0; L]; 2]; LANES / 2];
+                for (pair, (a, b)) in pairs.iter_mut().zip(radiance.iter().zip(radiance.iter().rev())) {
+                    for j in 0..L {
+                        (pair[0][j], pair[1][j]) = (a[j] + b[j], a[j] - b[j]);
+                    }
+                }
+                for (m, waves) in waves.iter().enumerate().take(orders) {
+                    let mut sum = [0.0; L];
+                    for (wave, pair) in waves.iter().zip(&pairs).take(AZIMUTHS / 2) {
+                        add_scaled(&mut sum, *wave, &pair[m % 2]);
+                    }
+                    turned[m * lines.len() + k] = sum;
+                }
+            }
+            for (m, run) in moments.runs(kept) {
+                let turned = &turned[m * lines.len()..(m + 1) * lines.len()];
+                for (value, shares) in
+                    here[run.clone()].iter_mut().zip(shares.chunks_exact(lines.len()).skip(run.start))
+                {
+                    let mut sum = [0.0; L];
+                    for (share, row) in shares.iter().zip(turned) {
+                        add_scaled(&mut sum, *share, row);
+                    }
+                    *value = sum;
+                }
+            }
+            for (line, row) in lines.iter().zip(&turned).filter(|(line, _)| line.zenith > 0.0) {
+                add_scaled(ground, weight(line) * line.zenith as f32, row);
+            }
+        }
+        all
     }
+}
+
+/// Cosines of m times the azimuths that have these cosines.
+fn waves<const AZIMUTHS: usize>(cosines: [f32; AZIMUTHS]) -> [[f32; AZIMUTHS]; MOST_COSINES] {
+    let mut waves = [[1.0; AZIMUTHS]; MOST_COSINES];
+    waves[1] = cosines;
+    for m in 2..MOST_COSINES {
+        for a in 0..AZIMUTHS {
+            waves[m][a] = 2.0 * cosines[a] * waves[m - 1][a] - waves[m - 2][a];
+        }
+    }
+    waves
 }

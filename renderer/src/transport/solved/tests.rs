@@ -1,12 +1,18 @@
 //! Laws of solved tables.
 
 use super::super::tests::{EARTH, columns, estimate, exponential, medium, mixed, rayleigh, towards};
+use super::first::{Scattering, Sunlight};
+use super::orders::Around;
+use super::rays::Lines;
+use super::solve::{First, Next, Setup};
 use super::*;
 use crate::atmosphere::Component;
 use crate::light::SunDisc;
 use crate::phase::Phase;
 use crate::sampling::spiral;
 use crate::transport::{Estimator, Problem};
+use crate::vectors::vectorised;
+use pulp::NullaryFnOnce;
 use tables::{Axis, Curve, Outside, Scale};
 
 mod certified;
@@ -163,6 +169,30 @@ fn radiance_does_not_jump_at_the_top_or_on_the_ground() {
             assert!((below / above - 1.0).abs() < 1e-5, "{zenith} at {a} m: {below:e}, {above:e}");
         }
     }
+}
+
+#[test]
+fn where_a_solution_begins_makes_no_difference() {
+    // Fields that begin at a coarser grid's, with moments of another degree or without its first order, are those that begin at their own
+    // first order to what an order changes, in less orders.
+    let medium = mixed();
+    let alone = Solved::new(&medium, EARTH, [0.3; 4], &TEST).expect("solved");
+    let coarse = Resolution { levels: 12, suns: 30, zeniths: [4, 3, 3], parts: 2, degree: 10, change: 5e-4 };
+    let mut coarser = Solved::new(&medium, EARTH, [0.3; 4], &coarse).expect("solved");
+    let air = (&medium, EARTH, [0.3; 4], false);
+    let begun = Solved::begun(air, &TEST, Some(&coarser), None).expect("solved");
+    coarser.first = None;
+    let found_again = Solved::begun(air, &TEST, Some(&coarser), None).expect("solved");
+    assert_eq!(begun.field.moments, found_again.field.moments);
+    let [few, many] = [&begun, &alone].map(|solved| solved.convergence().0);
+    assert!(few < many, "{few} and {many} orders");
+    for sun_zenith in [20.0, 80.0, 92.0] {
+        let off = begun.difference(&alone, Place::above(2.0), towards(sun_zenith, 0.0));
+        assert!(off < TEST.change, "sun {sun_zenith}: {off:e}");
+    }
+    // Another order changes a solution by no more than it says.
+    let (orders, change) = alone.again(&TEST, None).expect("solved").convergence();
+    assert!(orders == 2 && change <= alone.convergence().1, "{orders} orders, {change:e}");
 }
 
 #[test]
