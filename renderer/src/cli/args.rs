@@ -95,7 +95,7 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "E", value_parser = share, num_args = 0..=1, default_missing_value = "0.1%", require_equals = true, help_heading = "Sampling")]
     pub certify: Option<f64>,
     /// Relative error (rms) that solved tables are to have, 1e-5 to 1: finer ones are solved until they state it, or there is none
-    /// finer; with aerosol 0.2% takes some five times as long [default: 1%]
+    /// finer; with aerosol 0.2% takes some five times as long [default: 1%, with --certify at most half of what that asks]
     #[arg(long, value_name = "E", value_parser = share, help_heading = "Sampling")]
     pub table_error: Option<f64>,
     /// Grid on which tables are solved, whatever they would state; no other is solved that tells their error, which takes a third less time.
@@ -363,13 +363,18 @@ impl RenderArgs {
             spp: self.spp.or(base.spp.filter(|_| !effort)),
             block: self.block.or(base.block).or(timed),
             error: self.error.filter(|_| !planned).map(|error| error.share).or(base.error.filter(|_| !effort)),
-            table_error: self.table_error.unwrap_or(base.table_error),
+            table_error: self.table_error.unwrap_or_else(|| certifiable(self.certify, base.table_error)),
             fineness: self.fineness.or(base.fineness.filter(|_| self.table_error.is_none())),
         };
         let scene = scene.settled()?;
         scene.validate()?;
         Ok(scene)
     }
+}
+
+/// The error that tables are to have: half of what is to be shown, so that it can be.
+fn certifiable(shown: Option<f64>, otherwise: f64) -> f64 {
+    shown.map_or(otherwise, |shown| otherwise.min((0.5 * shown).max(1e-5)))
 }
 
 #[cfg(test)]

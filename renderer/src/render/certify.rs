@@ -17,7 +17,7 @@ const DIRECTIONS: usize = 128;
 
 /// Fans of a direction and a round; after how many rounds the error is looked at.
 const FANS: u32 = 8;
-const LOOKS: [u32; 6] = [4, 8, 16, 32, 64, 128];
+const LOOKS: [u32; 6] = [2, 4, 8, 16, 32, 128];
 
 /// Standard errors that a number is below with 95 % confidence: of one look, and of each of [`LOOKS`] so that the six together
 /// have it (5 % / 6, Bonferroni).

@@ -40,11 +40,11 @@ const OFF: f64 = 1e-6;
 /// Most edges of layers that are heeded.
 const MOST_EDGES: usize = 24;
 
-/// The error in its worst direction that a panorama may have of a table that is off by `stated` (rms): a share of it, within limits.
+/// The error in its worst direction that a panorama may have of a table that is off by `stated` (rms): as much, within limits. Its own rms is
+/// then a third of that or less.
 #[must_use]
 pub fn befitting(stated: f64) -> f64 {
-    const SHARE: f64 = 0.3;
-    (SHARE * stated).clamp(2e-4, 5e-3)
+    stated.clamp(2e-4, 5e-3)
 }
 
 /// Radiance in all directions at a place with a sun.
@@ -107,7 +107,7 @@ impl<const L: usize> Panorama<L> {
             let ends = (k as f64 / PARTS as f64, (k + 1) as f64 / PARTS as f64);
             let (low, high) = (between.at(ends.0) - OFF, between.at(ends.1) + OFF);
             if zeniths.iter().any(|zenith| low <= *zenith && *zenith <= high) {
-                survey.part(between, ends)
+                survey.part(between, ends, HALVES)
             } else {
                 vec![Part::new(between, ends, None)]
             }
@@ -215,16 +215,23 @@ impl<const L: usize> Survey<'_, L> {
         (0..=azimuths).filter(|i| !only_odd || i % 2 == 1).map(look).collect()
     }
 
-    /// A part, or its halves.
-    fn part(&self, between: Between, ends: (f64, f64)) -> Vec<Part<L>> {
+    /// A part, or its halves, which may be halved so often.
+    fn part(&self, between: Between, ends: (f64, f64), halves: u32) -> Vec<Part<L>> {
         let at = |share: f64| between.at(ends.0 + (ends.1 - ends.0) * share);
         let tried: Option<Vec<_>> = [0.05, 0.5, 0.95].iter().map(|share| self.azimuths(at(*share))).collect();
         let Some(azimuths) = tried.and_then(|tried| tried.into_iter().max()) else {
-            return vec![Part::new(between, ends, None)];
+            if halves == 0 {
+                return vec![Part::new(between, ends, None)];
+            }
+            let middle = 0.5 * (ends.0 + ends.1);
+            return both(
+                || self.part(between, (ends.0, middle), halves - 1),
+                || self.part(between, (middle, ends.1), halves - 1),
+            );
         };
         let ring = |i: usize| self.ring(at(i as f64 / RINGS as f64), azimuths, false);
         let rings = (0..=RINGS).into_par_iter().map(ring).collect();
-        self.halves(between, ends, azimuths, rings, HALVES)
+        self.halves(between, ends, azimuths, rings, halves)
     }
 
     fn halves(
@@ -251,12 +258,10 @@ impl<const L: usize> Survey<'_, L> {
         let second = all.split_off(RINGS);
         all.push(second[0].clone());
         let middle = 0.5 * (ends.0 + ends.1);
-        let (mut parts, more) = rayon::join(
+        both(
             || self.halves(between, (ends.0, middle), azimuths, all, halves - 1),
             || self.halves(between, (middle, ends.1), azimuths, second, halves - 1),
-        );
-        parts.extend(more);
-        parts
+        )
     }
 
     /// How many intervals of azimuth a ring needs.
@@ -312,6 +317,16 @@ impl<const L: usize> Survey<'_, L> {
         let rows = shown.linear.iter().zip(&seen.linear);
         rows.flat_map(|(shown, seen)| shown.iter().zip(seen).zip(right)).all(|((a, b), right)| near(a, *b, right))
     }
+}
+
+/// The parts of two halves, which are found at the same time.
+fn both<const L: usize>(
+    first: impl FnOnce() -> Vec<Part<L>> + Send,
+    second: impl FnOnce() -> Vec<Part<L>> + Send,
+) -> Vec<Part<L>> {
+    let (mut parts, more) = rayon::join(first, second);
+    parts.extend(more);
+    parts
 }
 
 /// The old ones with a new one between each two.
