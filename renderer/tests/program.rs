@@ -109,3 +109,19 @@ fn pictures_that_differ_by_more_than_is_asked_exit_with_one() {
     let code = |b: &str| airlight(&folder, &["compare", "a.exr", b, "--within", "1%"]).status.code();
     assert_eq!([code("a.exr"), code("b.exr"), code("none.exr")], [Some(0), Some(1), Some(2)]);
 }
+
+#[test]
+fn programs_that_only_judge_are_silent_if_they_are_asked_to_be() {
+    let scenes = [("fine.toml", "width = 8\nheight = 8\n"), ("dark.toml", "sun_elevation_deg = -40.0\n")];
+    let folder = folder("judges", &scenes);
+    for (words, findings) in [
+        (["doctor", "fine.toml", "--quiet"], false),
+        (["doctor", "dark.toml", "--quiet"], true),
+        (["sweep", "--paths=2000", "--quiet"], false),
+    ] {
+        let output = airlight(&folder, &words);
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success() && output.stderr.is_empty(), "{words:?}: {said}");
+        assert!(said.is_empty() != findings && !said.contains("seen  "), "{words:?}: {said}");
+    }
+}

@@ -1,7 +1,11 @@
-//! Everything to look at in one page: what the tables hold, the figures of `plots/`, the pictures of the documents.
+//! Everything to look at in one page: what the tables hold, what they and the renderer are beside independent answers, the figures of `plots/`,
+//! the pictures of the documents.
 //!
 //! The page is one HTML file that opens from disk: figures are inline SVG, pictures are in it as data, nothing is fetched and nothing is run. The same
 //! files give the same bytes.
+
+mod markdown;
+mod numbers;
 
 use crate::inspect;
 use std::collections::BTreeMap;
@@ -40,7 +44,7 @@ pub struct Folders<'a> {
     pub data: &'a Path,
     /// The figures: SVG, and README.md with a row of each.
     pub plots: &'a Path,
-    /// The documents with their pictures.
+    /// The documents with their pictures; validation.md is one of them.
     pub docs: &'a Path,
 }
 
@@ -50,7 +54,8 @@ body{margin:0 auto;max-width:72rem;padding:1rem 1.5rem 4rem;background:#fff;colo
 h1,h2,h3{line-height:1.2}h2{margin-top:3rem;border-bottom:1px solid #ddd}\
 figure{margin:2rem 0}figcaption{color:#444;font-size:.9rem}\
 svg{width:100%;height:auto}img{max-width:100%;height:auto}\
-details{padding:.15rem 0}pre{overflow-x:auto;background:#f6f6f6;padding:.7rem;font-size:.8rem}code{background:#f2f2f2}";
+details{padding:.15rem 0}table{border-collapse:collapse;margin:1rem 0;font-size:.85rem}caption{text-align:left;padding:.3rem 0}\
+th,td{border:1px solid #ddd;padding:.15rem .5rem;text-align:right}pre{overflow-x:auto;background:#f6f6f6;padding:.7rem;font-size:.8rem}code{background:#f2f2f2}";
 
 /// The page. Figures and pictures stand in the order of their names; what a figure shows is said by the row of `plots/README.md` that names it.
 ///
@@ -58,11 +63,12 @@ details{padding:.15rem 0}pre{overflow-x:auto;background:#f6f6f6;padding:.7rem;fo
 /// [`ReportError`] with the first file that cannot be read, or holds what does not belong in a page.
 pub fn html(folders: Folders<'_>) -> Result<String, ReportError> {
     let (tables, figures, pictures) = (tables(folders.data)?, figures(folders.plots)?, pictures(folders.docs)?);
+    let validation = markdown::document(&String::from_utf8_lossy(&read(&folders.docs.join("validation.md"))?));
     Ok(format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width\">\n<title>Airlight</title>\n<style>{STYLE}</style>\n</head>\n<body>\n\
-         <h1>Airlight {}</h1>\n<p><a href=\"#tables\">Tables</a> · <a href=\"#figures\">Figures</a> · <a href=\"#pictures\">Pictures</a></p>\n\
-         <h2 id=\"tables\">Tables</h2>\n{tables}<h2 id=\"figures\">Figures</h2>\n{figures}<h2 id=\"pictures\">Pictures</h2>\n{pictures}</body>\n</html>\n",
+         <h1>Airlight {}</h1>\n<p><a href=\"#tables\">Tables</a> · <a href=\"#validation\">Validation</a> · <a href=\"#figures\">Figures</a> · <a href=\"#pictures\">Pictures</a></p>\n\
+         <h2 id=\"tables\">Tables</h2>\n{tables}<h2 id=\"validation\">Validation</h2>\n{validation}<h2 id=\"figures\">Figures</h2>\n{figures}<h2 id=\"pictures\">Pictures</h2>\n{pictures}</body>\n</html>\n",
         env!("CARGO_PKG_VERSION")
     ))
 }
@@ -78,9 +84,10 @@ fn tables(folder: &Path) -> Result<String, ReportError> {
         // Writing to a string does not fail.
         let _ = writeln!(
             page,
-            "<details id=\"table-{0}\"><summary><b>{0}</b> {title} ({1:.1} kB{checksum})</summary><pre>{text}</pre></details>",
+            "<details id=\"table-{0}\"><summary><b>{0}</b> {title} ({1:.1} kB{checksum})</summary><pre>{text}</pre>{2}</details>",
             escaped(&name),
-            bytes.len() as f64 / 1e3
+            bytes.len() as f64 / 1e3,
+            numbers::of(&table)
         );
     }
     Ok(page)
@@ -102,7 +109,7 @@ fn figures(folder: &Path) -> Result<String, ReportError> {
             escaped(&name)
         );
         if let Some([shows, command]) = row(&readme, &name) {
-            let _ = write!(page, ": {} {}", marked(&shows), marked(&command));
+            let _ = write!(page, ": {} {}", markdown::line(&shows), markdown::line(&command));
         }
         page += "</figcaption>\n</figure>\n";
     }
@@ -141,7 +148,7 @@ fn pictures(folder: &Path) -> Result<String, ReportError> {
                 continue;
             }
             if !headed {
-                let _ = writeln!(page, "<h3>{}</h3>", marked(title));
+                let _ = writeln!(page, "<h3>{}</h3>", markdown::line(title));
                 headed = true;
             }
             let image = match file.extension().and_then(|end| end.to_str()) {
@@ -152,7 +159,8 @@ fn pictures(folder: &Path) -> Result<String, ReportError> {
                 }
                 _ => continue,
             };
-            let _ = writeln!(page, "<figure>\n{image}\n<figcaption>{}</figcaption>\n</figure>", marked(caption));
+            let _ =
+                writeln!(page, "<figure>\n{image}\n<figcaption>{}</figcaption>\n</figure>", markdown::line(caption));
             shown.insert(file, caption.to_owned());
         }
     }
@@ -205,28 +213,6 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// A line of Markdown: code between backquotes, of links the text.
-fn marked(text: &str) -> String {
-    let mut html = String::new();
-    for (index, part) in text.split('`').enumerate() {
-        if index % 2 == 1 {
-            html += &format!("<code>{}</code>", escaped(part));
-            continue;
-        }
-        let mut rest = part;
-        while let Some((before, link)) = rest.split_once('[')
-            && let Some((label, after)) = link.split_once("](")
-            && let Some((_, after)) = after.split_once(')')
-        {
-            html += &escaped(before);
-            html += &escaped(label);
-            rest = after;
-        }
-        html += &escaped(rest);
-    }
-    html
-}
-
 /// Bytes in base 64 (RFC 4648, section 4): three of them are four characters, what is missing of the last is `=`.
 fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -265,8 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn markdown_becomes_html_and_nothing_of_it_runs() {
-        assert_eq!(marked("a < `b & c` of [d](e.md)."), "a &lt; <code>b &amp; c</code> of d.");
+    fn pictures_are_found_and_nothing_of_a_figure_runs() {
         assert_eq!(images("x ![a b](pictures/a.png) y ![c](d.svg)"), [("a b", "pictures/a.png"), ("c", "d.svg")]);
         let path = Path::new("a.svg");
         assert_eq!(svg("<?xml?>\n<svg></svg>\n", path).expect("a figure"), "<svg></svg>");
@@ -283,6 +268,7 @@ mod tests {
         let figures = files(&plots, "svg").expect("figures");
         assert!(figures.iter().all(|figure| page.contains(&format!("<figure id=\"{}\">", stem(figure)))));
         assert!(page.contains("data:image/png;base64,") && page.ends_with("</html>\n"));
+        assert!(page.contains("<h2>Radiative transfer</h2>") && page.contains("<code>number_density</code> in m^-3"));
         let fetched = ["<script", "<link", "src=\"http", "href=\"http", "url(http"];
         assert!(fetched.iter().all(|word| !page.contains(word)));
     }

@@ -27,8 +27,11 @@ use tables::{Axis, Curve, Outside, Scale};
 
 const RADIUS_M: f64 = 6360.0 * KM;
 const TOP_M: f64 = 100.0 * KM;
-const EYE_M: f64 = 200.0;
-const ALBEDO: f64 = 0.2;
+pub(crate) const EYE_M: f64 = 200.0;
+pub(crate) const ALBEDO: f64 = 0.2;
+
+/// The planet.
+pub(crate) const SHAPE: Shape = Shape::Sphere { radius_m: RADIUS_M };
 
 /// Sky pixels of the picture that costs are given for: a fisheye of 320 x 320.
 pub const PIXELS: f64 = 80_425.0;
@@ -179,7 +182,7 @@ pub fn measure(
     let sun = SunDisc::beam(towards(case.sun_zenith_deg, 0.0));
     let problem = Problem {
         texture: None,
-        shape: Shape::Sphere { radius_m: RADIUS_M },
+        shape: SHAPE,
         medium,
         columns,
         albedo: [ALBEDO],
@@ -250,7 +253,7 @@ pub fn measure(
 /// # Errors
 /// [`SolveError`] never: the planet is round.
 pub fn solve(medium: &Medium<1>) -> Result<Solved<1>, SolveError> {
-    Solved::new(medium, Shape::Sphere { radius_m: RADIUS_M }, [ALBEDO], &Resolution::RENDER)
+    Solved::new(medium, SHAPE, [ALBEDO], &Resolution::RENDER)
 }
 
 /// The certificate of a table for a case's observer and sun.
@@ -296,5 +299,5 @@ pub(crate) fn towards(zenith: f64, azimuth: f64) -> DVec3 {
 /// The columns of a case's medium.
 #[must_use]
 pub fn columns(medium: &Medium<1>) -> Columns<1> {
-    Columns::new(medium, Shape::Sphere { radius_m: RADIUS_M }, Tolerance::RENDER)
+    Columns::new(medium, SHAPE, Tolerance::RENDER)
 }

@@ -28,6 +28,9 @@ pub(super) struct DoctorArgs {
     /// Write the findings as JSON
     #[arg(long)]
     pub json: bool,
+    /// Say nothing but findings: nothing at all where nothing is wrong
+    #[arg(long, conflicts_with = "json")]
+    pub quiet: bool,
 }
 
 pub(super) fn run(args: &DoctorArgs) -> Result<Outcome, Failure> {
@@ -69,6 +72,9 @@ pub(super) fn run(args: &DoctorArgs) -> Result<Outcome, Failure> {
     for Finding { trouble, what, remedy } in &findings {
         println!("{:11} {what}", trouble.name());
         println!("            {remedy}");
+    }
+    if args.quiet {
+        return Ok(Outcome::Done);
     }
     if findings.is_empty() {
         println!("fine        nothing was found wrong");

@@ -53,6 +53,8 @@ pub(super) enum StudyName {
     PolarisedSuns,
     /// Solved tables: error against the time to solve, for grids, moments and orders
     SolvedGrids,
+    /// A picture of three skies at one wavelength: error against cost of solved tables, of paths, and of Mitsuba 3 as it was measured
+    Beside,
     /// Every method: error against cost over 60 scenes, from day to twilight, from the ground to space (an hour on two cores)
     Ladder,
     /// Where each method leaves its error bound: maps over sun and haze, altitude and view, asymmetry, radius, wavelength, steps, mappings
@@ -77,6 +79,7 @@ impl StudyName {
     pub(super) fn as_str(self) -> &'static str {
         match self {
             Self::Columns => "columns",
+            Self::Beside => "beside",
             Self::Ladder => "ladder",
             Self::SolvedSuns => "solved-suns",
             Self::PolarisedSuns => "polarised-suns",
@@ -119,6 +122,7 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
     let chart = |make: MakeChart| -> Make { Box::new(move |data, progress| make(data, progress).map(Made::from)) };
     let make: Make = match args.what {
         StudyName::Columns => chart(study::columns::make),
+        StudyName::Beside => chart(study::beside::make),
         StudyName::SolvedSuns => chart(study::solved::suns),
         StudyName::PolarisedSuns => chart(study::solved::polarised_suns),
         StudyName::SolvedGrids => chart(study::solved::grids),

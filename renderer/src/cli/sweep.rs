@@ -27,6 +27,9 @@ pub(super) struct SweepArgs {
     /// Write what was found as JSON
     #[arg(long, conflicts_with = "scene")]
     pub json: bool,
+    /// Say nothing but errors: the exit code tells whether all is well
+    #[arg(long, conflicts_with_all = ["scene", "json"])]
+    pub quiet: bool,
     /// Trace one path of this scene instead, and say what the scene is [default: all scenes]
     #[arg(long, value_name = "N", requires = "path")]
     pub scene: Option<u64>,
@@ -44,7 +47,7 @@ pub(super) fn run(args: &SweepArgs) -> Result<Outcome, Failure> {
     if let (Some(scene), Some(path)) = (args.scene, args.path) {
         return pool.install(|| replay(&plan, scene, path));
     }
-    let line = Line::new(false);
+    let line = Line::new(args.quiet);
     let report = pool
         .install(|| plan.run(&|share| line.show(share, |_| format!("{} paths", amount(share * plan.paths as f64)))));
     line.clear();
@@ -52,6 +55,8 @@ pub(super) fn run(args: &SweepArgs) -> Result<Outcome, Failure> {
     let laws = pool.install(|| laws(plan.seed, SKIES));
     if args.json {
         println!("{}", json_of(&plan, &report, &laws, seconds));
+    }
+    if args.json || args.quiet {
         return verdict(report.bad, laws.kept());
     }
     for bad in &report.examples {

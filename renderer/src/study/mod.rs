@@ -1,6 +1,7 @@
 //! Error against size and cost, as tables for charts: `airlight study NAME` writes one, `airlight-tools chart` draws it.
 
 pub mod atlas;
+pub mod beside;
 pub mod columns;
 pub mod ladder;
 pub mod neutral_points;

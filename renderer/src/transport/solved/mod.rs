@@ -227,11 +227,17 @@ impl<const L: usize> Tables<L> {
         let hidden = solved.optics.in_peaks().map(|share| few + HIDDEN * share);
         let usual = Self { solved, coarser, hidden };
         if usual.error(from, sun, looks) <= error {
-            return Ok(usual);
+            return Ok(usual.settled());
         }
         let solved = Solved::begun(air, &Resolution::FINE, Some(&usual.solved), kept)?;
         let hidden = solved.optics.in_peaks().map(|share| HIDDEN * share);
-        Ok(Self { solved, coarser: usual.solved, hidden })
+        Ok(Self { solved, coarser: usual.solved, hidden }.settled())
+    }
+
+    /// With nothing kept from which others would begin.
+    fn settled(mut self) -> Self {
+        (self.solved.first, self.coarser.first) = (None, None);
+        self
     }
 
     /// What the table states: how far it is off at an observer with the sun in that unit direction, rms over the wavelengths and the

@@ -172,6 +172,22 @@ fn radiance_does_not_jump_at_the_top_or_on_the_ground() {
 }
 
 #[test]
+fn what_polynomials_leave_of_the_dark_is_not_made_bright() {
+    // A look with the sun behind its line, and next to nothing scattered once but with peaks below zero, as interpolation leaves it.
+    let solved = Solved::new(&mixed(), EARTH, [0.3; 4], &TEST).expect("solved");
+    let (from, direction, sun) = (Place::above(2.0), towards(70.0, 180.0), towards(94.0, 0.0));
+    let sunlight = &solved.optics.columns;
+    let mut seen = view::Look { solved: &solved, from, direction, sun, single: false, sunlight }.call();
+    let whole: f64 = seen.once.iter().flatten().sum();
+    seen.once = seen.once.map(|row| row.map(|_| 1e-9 * whole));
+    seen.peaks = [-whole; 4];
+    let light = solved.shade(&seen, direction.dot(sun), false);
+    for (light, rest) in light.into_iter().zip(seen.rest) {
+        assert!((light - rest).abs() < 1e-6 * rest, "{light:e} of {rest:e}");
+    }
+}
+
+#[test]
 fn where_a_solution_begins_makes_no_difference() {
     // Fields that begin at a coarser grid's, with moments of another degree or without its first order, are those that begin at their own
     // first order to what an order changes, in less orders.

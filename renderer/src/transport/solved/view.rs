@@ -106,7 +106,8 @@ impl<const L: usize> Solved<L> {
                 }
             }
             for j in 0..L {
-                depth[j] = if whole[j] > 0.0 { seen.peaks[j] / whole[j] } else { 0.0 };
+                // Between looks in the dark a polynomial may have a little of one without the other.
+                depth[j] = if whole[j] > 0.0 { (seen.peaks[j] / whole[j]).max(0.0) } else { 0.0 };
             }
         }
         let mut sum = seen.rest;
