@@ -44,7 +44,7 @@ fn earth() -> Figure {
             view_elevation_deg: Some(-90.0),
             aod: Some(aod),
             albedo: Albedo::Ground("ocean".into()),
-            spp: Some(4),
+            spp: Some(16),
             ..pinhole((192, 192), 18.6, 45.0)
         };
         let line = format!("the Earth from 36 000 km, desert dust of optical depth {aod} over an ocean");
