@@ -50,9 +50,9 @@ pub fn measure(
     with_margins(rows)
 }
 
-/// Rows with the margins that they call for; none of a single atmosphere.
+/// Rows, as a file has them, with the margins that these call for; none of a single atmosphere.
 fn with_margins(rows: Vec<Row>) -> Result<Measured, RenderError> {
-    let measured = Measured { rows, ..Measured::default() };
+    let measured = Measured::parse(&Measured { rows, ..Measured::default() }.csv()).map_err(RenderError::Measured)?;
     let one = measured.rows.iter().all(|row| row.atmosphere == measured.rows[0].atmosphere);
     let margins = if one { Ok([0.0; 3]) } else { crate::plan::margins(&measured) };
     Ok(Measured { margins: margins.map_err(RenderError::Measured)?, ..measured })
