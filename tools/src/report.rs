@@ -268,7 +268,7 @@ mod tests {
         let figures = files(&plots, "svg").expect("figures");
         assert!(figures.iter().all(|figure| page.contains(&format!("<figure id=\"{}\">", stem(figure)))));
         assert!(page.contains("data:image/png;base64,") && page.ends_with("</html>\n"));
-        assert!(page.contains("<h2>Radiative transfer</h2>") && page.contains("<code>number_density</code> in m^-3"));
+        assert!(page.contains("<h3>Radiative transfer</h3>") && page.contains("<code>number_density</code> in m^-3"));
         let fetched = ["<script", "<link", "src=\"http", "href=\"http", "url(http"];
         assert!(fetched.iter().all(|word| !page.contains(word)));
     }

@@ -1,7 +1,7 @@
 //! Markdown as HTML that fetches nothing and runs nothing.
 
 use super::escaped;
-use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd, html};
+use pulldown_cmark::{Event, HeadingLevel, Options, Parser, Tag, TagEnd, html};
 use std::path::Path;
 
 /// A document without its title. Of links the text is left, an image is a link to the figure of that name on the same page.
@@ -31,8 +31,11 @@ fn events(text: &str) -> impl Iterator<Item = Event<'_>> {
 
 fn written<'a>(events: impl Iterator<Item = Event<'a>>) -> String {
     let mut page = String::new();
-    // Headings of a document stand below those of the page.
-    let lower = |event| match event {
+    let placed = |event| match event {
+        Event::Start(Tag::Heading { level, id, classes, attrs }) => {
+            Event::Start(Tag::Heading { level: lower(level), id, classes, attrs })
+        }
+        Event::End(TagEnd::Heading(level)) => Event::End(TagEnd::Heading(lower(level))),
         Event::Start(Tag::Image { dest_url, .. }) => {
             let name = Path::new(&*dest_url).file_stem().unwrap_or_default().to_string_lossy().into_owned();
             Event::InlineHtml(format!("<a href=\"#{}\">", escaped(&name)).into())
@@ -40,8 +43,13 @@ fn written<'a>(events: impl Iterator<Item = Event<'a>>) -> String {
         Event::End(TagEnd::Image) => Event::InlineHtml("</a>".into()),
         other => other,
     };
-    html::push_html(&mut page, events.map(lower));
+    html::push_html(&mut page, events.map(placed));
     page
+}
+
+/// Headings of a document stand below those of the page.
+fn lower(level: HeadingLevel) -> HeadingLevel {
+    HeadingLevel::try_from(level as usize + 1).unwrap_or(level)
 }
 
 #[cfg(test)]
@@ -53,7 +61,7 @@ mod tests {
         assert_eq!(line("a < `b & c` of [d](e.md)."), "a &lt; <code>b &amp; c</code> of d.");
         let text = "# T\n\n## A\n\n| a | b |\n|---|---|\n| 1 | [x](http://y) |\n\n![see](../plots/validation-rt.png)\n\n<script>z</script>\n";
         let page = document(text);
-        assert!(page.contains("<h2>A</h2>") && page.contains("<td>1</td><td>x</td>"), "{page}");
+        assert!(page.contains("<h3>A</h3>") && page.contains("<td>1</td><td>x</td>"), "{page}");
         assert!(page.contains("<a href=\"#validation-rt\">see</a>") && !page.contains("<h1>"), "{page}");
         assert!(!page.contains("<script") && !page.contains("http"), "{page}");
     }
