@@ -1,5 +1,7 @@
 //! What can be wrong with a measured input: where, what was expected, what was found.
 
+use tables::excerpt;
+
 /// An input file that cannot be taken: the file, the place in it, and what is wrong there.
 #[derive(Debug, thiserror::Error)]
 #[error("{}", self.describe())]
@@ -156,7 +158,7 @@ impl RawError {
             text += &format!(", line {line}");
         }
         if let Some(column) = &self.column {
-            text += &format!(", column {column:?}");
+            text += &format!(", column {:?}", excerpt(column));
         }
         format!("{text}: {}", self.fault)
     }
@@ -165,4 +167,16 @@ impl RawError {
 /// The unit after a space; nothing for a number without unit.
 fn suffix(unit: &str) -> String {
     if unit == "1" { String::new() } else { format!(" {unit}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_columns_are_cut() {
+        let error = |name: &str| RawError::new("a.csv", Fault::NotUtf8).in_column(name).to_string();
+        assert!(error("h").contains("column \"h\": "));
+        assert!(error(&"\"".repeat(5000)).len() < 2000);
+    }
 }
