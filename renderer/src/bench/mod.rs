@@ -33,8 +33,18 @@ pub(crate) const ALBEDO: f64 = 0.2;
 /// The planet.
 pub(crate) const SHAPE: Shape = Shape::Sphere { radius_m: RADIUS_M };
 
-/// Sky pixels of the picture that costs are given for: a fisheye of 320 x 320.
+/// Pixels of the width of the picture that costs are given for, a fisheye.
+const WIDTH: u32 = 320;
+
+/// Its sky pixels.
 pub const PIXELS: f64 = 80_425.0;
+
+/// The directions of its pixels.
+pub(crate) fn fisheye() -> Vec<DVec3> {
+    let camera = Scene { width: Some(WIDTH), height: Some(WIDTH), ..Scene::default() }.camera();
+    let pixels = (0..WIDTH * WIDTH).map(|i| (f64::from(i % WIDTH) + 0.5, f64::from(i / WIDTH) + 0.5));
+    pixels.filter_map(|(x, y)| camera.direction(x, y)).collect()
+}
 
 /// `L` wavelengths in nm, at least 2, evenly from 380 to 780.
 pub(crate) fn visible<const L: usize>() -> [f64; L] {

@@ -1,13 +1,12 @@
 //! What solved tables cost, and how far they are from the path tracer.
 
-use super::{medium, towards, visible};
+use super::{fisheye, medium, towards, visible};
 use crate::atmosphere::{Columns, Tolerance};
 use crate::data::Data;
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::render::RenderError;
 use crate::sampling::Sampler;
-use crate::scene::Scene;
 use crate::transport::{self, Estimator, FINER, Panorama, Problem, Resolution, Solved, befitting};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -17,9 +16,6 @@ use tables::views::Biome;
 
 /// Wavelengths, evenly over what is seen.
 const WAVELENGTHS: usize = 16;
-
-/// Pixels of the picture's width that is timed.
-const WIDTH: u32 = 320;
 
 /// Zenith angles and azimuths of a dome that is made again and again, and how often.
 const DOME: (u32, u32) = (160, 32);
@@ -78,13 +74,11 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
     let solved = coarse.again(&Resolution::RENDER, None)?;
     let seconds = [start.elapsed().as_secs_f64(), first];
     let from = Place::above(2.0);
-    let camera = Scene { width: Some(WIDTH), height: Some(WIDTH), ..Scene::default() }.camera();
     let sun = towards(60.0, 0.0);
     let shown = befitting(FINER * solved.difference(&coarse, from, sun));
     let picture = || {
         let start = Instant::now();
-        let pixels = (0..WIDTH * WIDTH).map(|i| (f64::from(i % WIDTH) + 0.5, f64::from(i / WIDTH) + 0.5));
-        let directions: Vec<_> = pixels.filter_map(|(x, y)| camera.direction(x, y)).collect();
+        let directions = fisheye();
         let wanted: Vec<_> = directions.iter().step_by(20).copied().collect();
         let seen = Panorama::new(&solved, from, sun, shown, &wanted);
         std::hint::black_box(directions.iter().map(|direction| seen.radiance(&solved, *direction)[0]).sum::<f64>());

@@ -98,7 +98,7 @@ pub(super) struct RenderArgs {
     /// finer; with aerosol 0.2% takes some five times as long [default: 1%, with --certify at most half of what that asks]
     #[arg(long, value_name = "E", value_parser = share, help_heading = "Sampling")]
     pub table_error: Option<f64>,
-    /// Grid on which tables are solved, whatever they would state; no other is solved that tells their error, which takes a third less time.
+    /// Grid on which tables are solved, whatever they would state; no other is solved that tells their error, which takes less time.
     /// `airlight plan` chooses one by measured errors [default: as --table-error asks]
     #[arg(long, value_name = "GRID", help_heading = "Sampling")]
     pub fineness: Option<Fineness>,

@@ -18,7 +18,7 @@ pub(super) struct StudyArgs {
     /// What to study
     #[arg(value_name = "WHAT")]
     pub what: StudyName,
-    /// Of the ladder 18 scenes and the main settings alone, in some five minutes; of stability fewer cells, in one or two; of plans and
+    /// Of the ladder 18 scenes and the main settings alone, in a minute or two; of stability fewer cells, in one or two; of plans and
     /// held-out the first ten atmospheres
     #[arg(long)]
     pub quick: bool,
@@ -53,9 +53,9 @@ pub(super) enum StudyName {
     PolarisedSuns,
     /// Solved tables: error against the time to solve, for grids, moments and orders
     SolvedGrids,
-    /// A picture of three skies at one wavelength: error against cost of solved tables, of paths, and of Mitsuba 3 as it was measured
+    /// A picture of four skies at one wavelength: error against cost of solved tables, of paths, and of Mitsuba 3 as it was measured
     Beside,
-    /// Every method: error against cost over 60 scenes, from day to twilight, from the ground to space (an hour on two cores)
+    /// Every method: error against cost over 60 scenes, from day to twilight, from the ground to space (eight minutes on two cores)
     Ladder,
     /// Where each method leaves its error bound: maps over sun and haze, altitude and view, asymmetry, radius, wavelength, steps, mappings
     Stability,
@@ -63,9 +63,9 @@ pub(super) enum StudyName {
     Strip,
     /// Where clear skies have no polarisation over the sun's elevation: the points of Arago, Babinet and Brewster
     NeutralPoints,
-    /// What plans are made from: errors and costs of every rung on 280 scenes (15 core-minutes; each atmosphere is stored when it is done)
+    /// What plans are made from: errors and costs of every rung on 280 scenes (8 core-minutes; each atmosphere is stored when it is done)
     Plans,
-    /// The same of 102 other scenes, by which plans are judged (10 core-minutes)
+    /// The same of 102 other scenes, by which plans are judged (4 core-minutes)
     HeldOut,
     /// How good plans are: those of the held-out scenes beside what is true, by what is stored
     Planner,

@@ -47,7 +47,7 @@ const BELOW: [&str; 3] = [
 const RMS: [&str; 3] = ["I: found (rms)", "Q: found (rms), relative to I", "U: found (rms), relative to I"];
 
 /// Directions above the horizon, even in solid angle.
-fn dome() -> Vec<DVec3> {
+pub(super) fn dome() -> Vec<DVec3> {
     (0..DIRECTIONS).map(|i| spiral(i, DIRECTIONS, [0.0, 1.0])).collect()
 }
 

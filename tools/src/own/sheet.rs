@@ -291,7 +291,6 @@ fn number(column: &Filled, field: &str) -> Result<f64, Fault> {
 
 /// A column that is not understood.
 fn unknown(name: &str, plain: &str, schema: &Schema) -> RawError {
-    let shown: String = name.chars().take(LONGEST_NUMBER).collect();
     let mut understood: Vec<String> = schema.quantities.iter().flat_map(|q| q.usual_names()).collect();
     understood.extend(schema.words.map(String::from));
     let unitless = schema.quantities.iter().find(|q| q.lacks_unit(plain));
@@ -303,7 +302,7 @@ fn unknown(name: &str, plain: &str, schema: &Schema) -> RawError {
             _ => String::new(),
         },
     };
-    named(Fault::UnknownColumn { understood: understood.join(", "), hint }, &shown)
+    named(Fault::UnknownColumn { understood: understood.join(", "), hint }, name)
 }
 
 #[cfg(test)]

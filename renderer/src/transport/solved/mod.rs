@@ -386,7 +386,10 @@ impl<const L: usize> Solved<L> {
     ) -> Result<Self, SolveError> {
         let fine = resolution.about(&optics.moments);
         let grid = Grid::new(&optics.medium, radius, &fine);
-        let solve = || Setup { grid: &grid, optics: &optics }.solve(&fine, from);
+        let solve = || {
+            let (solution, first) = Setup { grid: &grid, optics: &optics }.solve(&fine, from);
+            (solution, Some(first))
+        };
         let mut resolutions = from.map_or_else(Vec::new, |from| from.resolutions.clone());
         resolutions.push(*resolution);
         let ((field, orders, residual), first) = match kept {

@@ -125,14 +125,7 @@ impl<const L: usize> Around<'_, L> {
         for (batch, radiance) in batches {
             let there = batch.there(node.frame);
             let between = self.suns.locate(&there);
-            // Cosines of m times the azimuth there.
-            let mut cosines = [[1.0_f32; LANES]; ORDERS];
-            cosines[1] = batch.cosines(node.zenith, &there);
-            for m in 2..ORDERS {
-                for i in 0..LANES {
-                    cosines[m][i] = 2.0 * cosines[1][i] * cosines[m - 1][i] - cosines[m - 2][i];
-                }
-            }
+            let cosines = waves::<ORDERS, LANES>(batch.cosines(node.zenith, &there));
             for (i, sum) in radiance.iter_mut().enumerate() {
                 let first = between.first[i] as usize;
                 let [a, b, c, d] = between.weights.map(|weights| weights[i]);
@@ -271,7 +264,7 @@ impl<const L: usize> Gathered<L> {
                 shares[k] = weight(line) * *harmonic as f32;
             }
         }
-        let waves = waves(azimuth_cosines::<AZIMUTHS>());
+        let waves = waves::<MOST_COSINES, AZIMUTHS>(azimuth_cosines());
         // Of each order m and line the sum of cos(m phi) times the radiance.
         let mut turned = vec![[0.0; L]; orders * lines.len()];
         let here = all.moments.chunks_exact_mut(count).zip(&mut all.ground);
@@ -313,13 +306,14 @@ impl<const L: usize> Gathered<L> {
     }
 }
 
-/// Cosines of m times the azimuths that have these cosines.
-fn waves<const AZIMUTHS: usize>(cosines: [f32; AZIMUTHS]) -> [[f32; AZIMUTHS]; MOST_COSINES] {
-    let mut waves = [[1.0; AZIMUTHS]; MOST_COSINES];
+/// Cosines of m times the angles that have these cosines, for m below `ORDERS`, at least 2.
+#[inline(always)]
+fn waves<const ORDERS: usize, const N: usize>(cosines: [f32; N]) -> [[f32; N]; ORDERS] {
+    let mut waves = [[1.0; N]; ORDERS];
     waves[1] = cosines;
-    for m in 2..MOST_COSINES {
-        for a in 0..AZIMUTHS {
-            waves[m][a] = 2.0 * cosines[a] * waves[m - 1][a] - waves[m - 2][a];
+    for m in 2..ORDERS {
+        for i in 0..N {
+            waves[m][i] = 2.0 * cosines[i] * waves[m - 1][i] - waves[m - 2][i];
         }
     }
     waves

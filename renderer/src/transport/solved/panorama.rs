@@ -40,8 +40,8 @@ const OFF: f64 = 1e-6;
 /// Most edges of layers that are heeded.
 const MOST_EDGES: usize = 24;
 
-/// The error in its worst direction that a panorama may have of a table that is off by `stated` (rms): as much, within limits. Its own rms is
-/// then a third of that or less.
+/// The error in its worst direction that a panorama may have of a table that is off by `stated` (rms): as much, within limits, so that
+/// its own rms is far less.
 #[must_use]
 pub fn befitting(stated: f64) -> f64 {
     stated.clamp(2e-4, 5e-3)

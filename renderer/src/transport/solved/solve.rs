@@ -22,11 +22,7 @@ pub(super) struct Setup<'a, const L: usize> {
 
 impl<const L: usize> Setup<'_, L> {
     /// The solution on a grid of that resolution, begun at the field of another one; and its first order.
-    pub(super) fn solve(
-        &self,
-        resolution: &Resolution,
-        from: Option<&Solved<L>>,
-    ) -> (file::Solution<L>, Option<Field<L>>) {
+    pub(super) fn solve(&self, resolution: &Resolution, from: Option<&Solved<L>>) -> (file::Solution<L>, Field<L>) {
         let lines = self.lines(resolution);
         let first = self.first(resolution, &lines);
         let reflected = self.optics.albedo.map(|a| (a * FRAC_1_PI) as f32);
@@ -49,7 +45,7 @@ impl<const L: usize> Setup<'_, L> {
             let residual;
             (field, residual) = mixer.mix(field, next);
             if residual <= resolution.change || orders >= MOST_ORDERS {
-                return ((field, orders, residual), Some(first));
+                return ((field, orders, residual), first);
             }
         }
     }
