@@ -1,7 +1,7 @@
 //! A whole picture at one wavelength, error against cost: solved tables beside paths and beside Mitsuba 3.
 //!
 //! The skies are those of [`crate::bench`]. Paths and Mitsuba's take four times as long for half of the error; a table has a picture of its own
-//! error. What Mitsuba takes is not measured here: see [`CASES`].
+//! error. What Mitsuba takes is not measured here: see `CASES`.
 
 use super::solved::dome;
 use super::{Chart, Point};
