@@ -1,10 +1,10 @@
 //! How much of a file an error quotes.
 
 /// The most characters of a text that is quoted whole.
-const MOST: usize = 1000;
+const MOST: usize = 600;
 
 /// How many of a longer one from its beginning, and from its end, where parsers say the line.
-const ENDS: (usize, usize) = (800, 100);
+const ENDS: (usize, usize) = (450, 100);
 
 /// `text` if it is short, else its beginning, its end, and how long it is: an error stays a sentence whatever
 /// stands in the file.
@@ -28,6 +28,6 @@ mod tests {
         let short = "é".repeat(MOST);
         assert_eq!(excerpt(&short), short);
         let long = excerpt(&(short + &"ö".repeat(1_000_000)));
-        assert_eq!(long, format!("{}...{} (2002000 bytes)", "é".repeat(800), "ö".repeat(101)));
+        assert_eq!(long, format!("{}...{} (2001200 bytes)", "é".repeat(450), "ö".repeat(101)));
     }
 }
