@@ -33,10 +33,6 @@ pub struct Report {
     pub seconds: [f64; 2],
     /// Orders of scattering, and bytes of the table.
     pub size: (usize, usize),
-    /// Seconds of one thread for a fisheye of 320 x 320 pixels.
-    pub picture_seconds: f64,
-    /// Directions that were looked at for it.
-    pub looks: usize,
     /// Domes of 160 zenith angles and 32 azimuths a second on the current thread pool, each with another sun 80 to 20 degrees high.
     pub domes_per_second: f64,
     /// Of each sun its distance from the path tracer.
@@ -58,6 +54,10 @@ pub struct Distance {
     pub worst: f64,
     /// [`FINER`] of the table's distance from a coarser one, as it is stated with pictures.
     pub stated: f64,
+    /// Seconds of one thread for a fisheye of 320 x 320 pixels, as exact as that.
+    pub picture_seconds: f64,
+    /// Directions that were looked at for it.
+    pub looks: usize,
 }
 
 /// Solves the atmosphere of a scene with that biome, and compares it for each sun with `paths` paths in each direction
@@ -74,17 +74,15 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
     let solved = coarse.again(&Resolution::RENDER, None)?;
     let seconds = [start.elapsed().as_secs_f64(), first];
     let from = Place::above(2.0);
-    let sun = towards(60.0, 0.0);
-    let shown = befitting(FINER * solved.difference(&coarse, from, sun));
-    let picture = || {
+    let (directions, alone) = (fisheye(), rayon::ThreadPoolBuilder::new().num_threads(1).build()?);
+    let wanted: Vec<_> = directions.iter().step_by(20).copied().collect();
+    let picture = |sun: DVec3, stated: f64| {
         let start = Instant::now();
-        let directions = fisheye();
-        let wanted: Vec<_> = directions.iter().step_by(20).copied().collect();
-        let seen = Panorama::new(&solved, from, sun, shown, &wanted);
+        let seen = Panorama::new(&solved, from, sun, befitting(stated), &wanted);
         std::hint::black_box(directions.iter().map(|direction| seen.radiance(&solved, *direction)[0]).sum::<f64>());
         (start.elapsed().as_secs_f64(), seen.looks())
     };
-    let (picture_seconds, looks) = rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(picture);
+    let shown = befitting(FINER * solved.difference(&coarse, from, towards(60.0, 0.0)));
     let dome: Vec<_> = (0..DOME.0 * DOME.1)
         .map(|i| {
             towards(89.9 * f64::from(i / DOME.1) / f64::from(DOME.0), 180.0 * f64::from(i % DOME.1) / f64::from(DOME.1))
@@ -131,6 +129,8 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
                 (squares, noise, off)
             })
             .collect();
+        let stated = FINER * solved.difference(&coarse, from, sun);
+        let (picture_seconds, looks) = alone.install(|| picture(sun, stated));
         let mean = |of: &dyn Fn(&(f64, f64, f64)) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
         Distance {
             sun_zenith_deg,
@@ -138,11 +138,13 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
             noise: mean(&|row| row.1).sqrt(),
             mean: mean(&|row| row.2),
             worst: rows.iter().map(|row| row.2).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a }),
-            stated: FINER * solved.difference(&coarse, from, sun),
+            stated,
+            picture_seconds,
+            looks,
         }
     });
     let size = (solved.convergence().0, solved.bytes());
-    Ok(Report { seconds, size, picture_seconds, looks, domes_per_second, suns: distances.collect() })
+    Ok(Report { seconds, size, domes_per_second, suns: distances.collect() })
 }
 
 /// Mean and its variance, from 32 scrambled Sobol sequences.
