@@ -15,7 +15,7 @@
 //! To the second order in T that is what Nakajima & Tanaka (1988) call IMS, with the true lengths of a round planet. T here is the mean
 //! over the line of sight, weighted by the light scattered once.
 
-use super::harmonics::legendre;
+use super::harmonics::{MOST_DEGREE, legendre};
 use super::line::MOST_SPECIES;
 use super::species::{Species, moments};
 use crate::atmosphere::{Chord, Columns, Component, Medium, MediumError, Tolerance};
@@ -43,6 +43,8 @@ const LEAST: f64 = 1e-3;
 pub(super) struct Aureole<const L: usize> {
     /// Of each species.
     peaks: [Option<Peak<L>>; MOST_SPECIES],
+    /// The highest degree that the table keeps.
+    degree: usize,
 }
 
 /// The peak of a phase function.
@@ -63,7 +65,7 @@ pub(super) struct Through<'a, const L: usize> {
 impl<const L: usize> Aureole<L> {
     /// Without peaks.
     pub(super) fn none() -> Self {
-        Self { peaks: Default::default() }
+        Self { peaks: Default::default(), degree: 0 }
     }
 
     /// Of the species of a medium from which the peaks were cut.
@@ -74,13 +76,14 @@ impl<const L: usize> Aureole<L> {
                 *peak = Some(Peak::new(one, medium, shape)?);
             }
         }
-        Ok(Self { peaks })
+        let degree = species.iter().map(|one| one.coefficients.len()).max().unwrap_or(0).saturating_sub(1);
+        Ok(Self { peaks, degree })
     }
 
     /// A line of sight; none where there are no peaks.
     #[inline(always)]
     pub(super) fn along(&self, from: Place, direction: DVec3) -> Option<Through<'_, L>> {
-        if self.peaks.iter().all(Option::is_none) {
+        if self.is_none() {
             return None;
         }
         let mut peaks = [const { None }; MOST_SPECIES];
@@ -90,31 +93,80 @@ impl<const L: usize> Aureole<L> {
         Some(Through { peaks })
     }
 
-    /// What stands for the phase function of a species, in sr^-1, where the mean depth of peaks is T.
+    /// What a direction, at an angle from the sun with this cosine, shows of the peaks, where their mean depth is T.
     #[inline(always)]
-    pub(super) fn phase(&self, index: usize, species: &Species<L>, cosine: f64, depth: &[f64; L]) -> [f64; L] {
+    pub(super) fn towards(&self, cosine: f64, depth: &[f64; L]) -> Widened<'_, L> {
         let cosine = cosine.clamp(-1.0, 1.0);
-        let mut phase = species.phase.values(cosine);
-        let Some(peak) = &self.peaks[index] else { return phase };
-        let kept = species.kept(cosine);
+        let mut legendre = [1.0; MOST_DEGREE + 1];
+        legendre[1] = cosine;
+        for l in 2..=self.degree {
+            legendre[l] = (2.0 - PER[l]) * cosine * legendre[l - 1] - (1.0 - PER[l]) * legendre[l - 2];
+        }
         let place = (cosine.acos() / PI).sqrt() * STEPS as f64;
         let below = (place as usize).min(STEPS - 1);
-        let share = place - below as f64;
-        let (a, b) = (&peak.folds[below], &peak.folds[below + 1]);
+        // e^-T T^(n-1) / n! of n scatterings; the last has what is left of (1 - e^-T) / T.
         let through = exp_minus(*depth);
+        let (mut shares, mut term, mut left) = ([[0.0; L]; FOLDS], through, [0.0; L]);
         for j in 0..L {
-            // Shares of n scatterings, over T; the last has what is left of (1 - e^-T) / T.
-            let (e, t) = (through[j], depth[j].max(1e-6));
-            let mut term = e;
-            let mut left = (1.0 - e) / t - e;
-            let mut sum = 0.0;
-            for n in 0..FOLDS {
-                term *= t / (n as f64 + 2.0);
-                let this = if n + 1 < FOLDS { term } else { left };
-                left -= term;
-                sum += this * (a[n][j] + share * (b[n][j] - a[n][j]));
+            left[j] = (1.0 - through[j]) / depth[j].max(1e-6) - through[j];
+        }
+        for n in 0..FOLDS {
+            for j in 0..L {
+                term[j] *= depth[j].max(1e-6) * PER[n + 2];
+                shares[n][j] = if n + 1 < FOLDS { term[j] } else { left[j] };
+                left[j] -= term[j];
             }
-            phase[j] += (e - 1.0) * (phase[j] - kept[j]) + sum;
+        }
+        let lost = through.map(|through| through - 1.0);
+        Widened { aureole: self, legendre, below, share: place - below as f64, lost, shares }
+    }
+
+    /// Whether there are no peaks.
+    pub(super) fn is_none(&self) -> bool {
+        self.peaks.iter().all(Option::is_none)
+    }
+}
+
+/// 1 / l.
+const PER: [f64; MOST_DEGREE + 1] = {
+    let mut per = [1.0; MOST_DEGREE + 1];
+    let mut l = 2;
+    while l <= MOST_DEGREE {
+        per[l] = 1.0 / l as f64;
+        l += 1;
+    }
+    per
+};
+
+/// What a direction shows of the peaks of all species.
+pub(super) struct Widened<'a, const L: usize> {
+    aureole: &'a Aureole<L>,
+    /// P_l of the cosine of the angle from the sun.
+    legendre: [f64; MOST_DEGREE + 1],
+    /// Between which tabulated angles, and the share of the second.
+    below: usize,
+    share: f64,
+    /// e^-T - 1.
+    lost: [f64; L],
+    /// Of n >= 2 scatterings by peaks, over T.
+    shares: [[f64; L]; FOLDS],
+}
+
+impl<const L: usize> Widened<'_, L> {
+    /// What stands for the phase function of a species, given that itself, in sr^-1.
+    #[inline(always)]
+    pub(super) fn widen(&self, index: usize, species: &Species<L>, phase: [f64; L]) -> [f64; L] {
+        let mut phase = phase;
+        let Some(peak) = &self.aureole.peaks[index] else { return phase };
+        let kept = species.kept(&self.legendre);
+        let (a, b) = (&peak.folds[self.below], &peak.folds[self.below + 1]);
+        for j in 0..L {
+            phase[j] += self.lost[j] * (phase[j] - kept[j]);
+        }
+        for (n, shares) in self.shares.iter().enumerate() {
+            for j in 0..L {
+                phase[j] += shares[j] * (a[n][j] + self.share * (b[n][j] - a[n][j]));
+            }
         }
         phase
     }

@@ -58,37 +58,70 @@ impl Stencil {
         Self { first: i.saturating_sub(1).max(low).min(high + 1 - count), count }
     }
 
-    /// Weights at `s`.
-    #[inline(always)]
-    pub(super) fn weights(self, places: &[Crossing], s: f64) -> [f64; 4] {
+    /// The polynomials through these places.
+    pub(super) fn through(self, places: &[Crossing]) -> Lagrange {
+        let (mut at, mut factors) = ([0.0; 4], [0.0; 4]);
         let places = &places[self.first..self.first + self.count];
-        let mut weights = [0.0; 4];
-        if let [a, b, c, d] = places {
-            let [a, b, c, d] = [a.s, b.s, c.s, d.s];
-            let [u, v, w, x] = [s - a, s - b, s - c, s - d];
-            return [
-                v * w * x / ((a - b) * (a - c) * (a - d)),
-                u * w * x / ((b - a) * (b - c) * (b - d)),
-                u * v * x / ((c - a) * (c - b) * (c - d)),
-                u * v * w / ((d - a) * (d - b) * (d - c)),
-            ];
-        }
-        for (k, weight) in weights.iter_mut().enumerate().take(self.count) {
+        for (k, place) in places.iter().enumerate() {
             let others = places.iter().enumerate().filter(|(i, _)| *i != k);
-            *weight = others.map(|(_, other)| (s - other.s) / (places[k].s - other.s)).product();
+            at[k] = place.s;
+            factors[k] = 1.0 / others.map(|(_, other)| place.s - other.s).product::<f64>();
         }
-        weights
+        Lagrange { stencil: self, at, factors }
+    }
+}
+
+/// Lagrange's polynomials l_k(s) = prod_(i != k) (s - s_i) / (s_k - s_i) of a stencil.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lagrange {
+    pub(super) stencil: Stencil,
+    /// s_k, and prod_(i != k) 1 / (s_k - s_i); 0 beyond the stencil.
+    at: [f64; 4],
+    factors: [f64; 4],
+}
+
+impl Lagrange {
+    /// Their values at `s`, 0 beyond the stencil.
+    #[inline(always)]
+    pub(super) fn weights(&self, s: f64) -> [f64; 4] {
+        // Of places that are not there the differences are 1.
+        let count = self.stencil.count;
+        let [u, v, w, x] = std::array::from_fn(|k| if k < count { s - self.at[k] } else { 1.0 });
+        let [a, b, c, d] = self.factors;
+        let (uv, wx) = (u * v, w * x);
+        [a * v * wx, b * u * wx, c * uv * x, d * uv * w]
     }
 }
 
 /// What becomes of the points of a quadrature along a chord. (No closure, since those are not always inlined.)
 pub(super) trait Take<const L: usize> {
+    /// What follows are points of another part of the line, from one place to the next.
+    #[inline(always)]
+    fn begin(&mut self, _part: (f64, f64)) {}
+
     /// A point, and of each species the weight of the point in m, times the transmittance to the chord's beginning, times the
     /// scattering coefficient.
     fn take(&mut self, s: f64, scattered: &[[f64; L]]);
 }
 
+impl<T: Take<L>, const L: usize> Take<L> for &mut T {
+    #[inline(always)]
+    fn begin(&mut self, part: (f64, f64)) {
+        (**self).begin(part);
+    }
+
+    #[inline(always)]
+    fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
+        (**self).take(s, scattered);
+    }
+}
+
 impl<A: Take<L>, B: Take<L>, const L: usize> Take<L> for (A, Option<B>) {
+    #[inline(always)]
+    fn begin(&mut self, part: (f64, f64)) {
+        self.0.begin(part);
+    }
+
     #[inline(always)]
     fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
         self.0.take(s, scattered);
@@ -101,8 +134,7 @@ impl<A: Take<L>, B: Take<L>, const L: usize> Take<L> for (A, Option<B>) {
 /// Takes the sum over all points times Lagrange's polynomials through the crossings around an interval: weights of the
 /// crossings in the integral of what lies between.
 pub(super) struct Spread<'a, const L: usize> {
-    pub(super) places: &'a [Crossing],
-    pub(super) stencil: Stencil,
+    pub(super) polynomials: Lagrange,
     /// Of each crossing in turn those of each species.
     pub(super) weights: &'a mut [[f64; L]],
 }
@@ -110,9 +142,9 @@ pub(super) struct Spread<'a, const L: usize> {
 impl<const L: usize> Take<L> for Spread<'_, L> {
     #[inline(always)]
     fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
-        let lagrange = self.stencil.weights(self.places, s);
-        let nodes = self.weights.chunks_exact_mut(scattered.len()).skip(self.stencil.first);
-        for (node, share) in nodes.take(self.stencil.count).zip(lagrange) {
+        let (Stencil { first, count }, shares) = (self.polynomials.stencil, self.polynomials.weights(s));
+        let nodes = self.weights.chunks_exact_mut(scattered.len()).skip(first);
+        for (node, share) in nodes.take(count).zip(shares) {
             for (sum, one) in node.iter_mut().zip(scattered) {
                 for j in 0..L {
                     sum[j] += share * one[j];
@@ -194,6 +226,7 @@ pub(super) fn quadrature<const L: usize>(
         let half = 0.5 * (end - start) / parts;
         for part in 0..parts as u32 {
             let middle = start + half * f64::from(2 * part + 1);
+            take.begin((middle - half, middle + half));
             for &(x, weight) in rule {
                 let s = middle + half * x;
                 let through = exp_minus(chord.point(s).depth);

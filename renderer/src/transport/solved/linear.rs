@@ -19,7 +19,7 @@ use super::harmonics::Moments;
 use super::line::Crossing;
 use super::orders::{Around, Batch, Field, Gathered, LANES, Turns, azimuth_cosines};
 use super::rays::{Line, Node};
-use super::view::Sight;
+use super::sight::Lit;
 use crate::geometry::Place;
 use crate::polarisation::{Frame, horizontal};
 use crate::vectors::add_scaled;
@@ -187,20 +187,20 @@ impl<const L: usize> Solved<L> {
     }
 }
 
-impl<const L: usize> Sight<'_, L> {
+impl<const L: usize> Lit<'_, L> {
     /// Adds Q and U of the sources at a crossing, referred to [`horizontal`], with the weights
     /// there times alpha and beta (onward.rs).
     #[inline(always)]
     pub(super) fn add_linear(&self, place: &Crossing, dipoles: &[[f64; L]; 2], sum: &mut [[f64; L]; 2]) {
-        let grid = &self.solved.grid;
+        let grid = &self.sight.solved.grid;
         let dipoles = dipoles.map(|row| row.map(|v| v as f32));
         let up = self.position(place.s).normalize();
         let Between { first: [first], weights } = grid.suns.locate(&[up.dot(self.sun) as f32]);
-        let [cos, sin] = azimuth(horizontal(self.from.up, self.direction), up, self.sun);
+        let [cos, sin] = azimuth(horizontal(self.sight.from.up, self.direction), up, self.sun);
         let zenith = (place.s / grid.level_radius(place.level)).clamp(-1.0, 1.0);
         let harmonics = harmonics(zenith).map(|row| row.map(|v| v as f32));
         let [q, u] = turned(&harmonics, cos, sin);
-        let level = self.solved.level(place.level);
+        let level = self.sight.solved.level(place.level);
         let [sum_q, sum_u] = sum;
         for m in 0..3 {
             let source = level.source(first as usize, weights.map(|weight| weight[0]), m, &dipoles);

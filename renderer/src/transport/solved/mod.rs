@@ -31,6 +31,7 @@ mod onward;
 mod orders;
 mod panorama;
 mod rays;
+mod sight;
 mod solve;
 mod sources;
 mod species;
@@ -112,6 +113,7 @@ struct Optics<const L: usize> {
 const FAINT: f64 = 1e-3;
 
 /// How many moments count at a crossing, their highest degree, and how many sources they go with.
+#[derive(Debug, Clone, Copy)]
 struct Reach {
     count: usize,
     degree: usize,
@@ -207,10 +209,13 @@ pub struct Tables<const L: usize> {
 /// horizon. By certificates (`airlight study solved-suns`).
 const HIDDEN: f64 = 3e-3;
 
+/// How much of that [`Resolution::FINE`] still hides.
+const FINE_HIDES: f64 = 1.0 / 3.0;
+
 impl<const L: usize> Tables<L> {
     /// Solves for `air` (medium, form of the planet, albedo of the ground; whether of polarised light or of radiance alone) on finer grids
     /// until the table states at most this error for an observer, a sun and the directions of a picture ([`Tables::error`]), or there is
-    /// none finer. `kept` as in [`Solved::kept`].
+    /// none finer; the finest is taken for errors below 0.3 % alone. `kept` as in [`Solved::kept`].
     ///
     /// # Errors
     /// As [`Solved::kept`].
@@ -230,8 +235,15 @@ impl<const L: usize> Tables<L> {
             return Ok(usual.settled());
         }
         let solved = Solved::begun(air, &Resolution::FINE, Some(&usual.solved), kept)?;
+        let hidden = solved.optics.in_peaks().map(|share| FINE_HIDES * few + HIDDEN * share);
+        let fine = Self { solved, coarser: usual.solved, hidden };
+        // A low sun may ask for more than any grid has: the finest is for those that ask for what moments hide.
+        if error > HIDDEN || fine.error(from, sun, looks) <= error {
+            return Ok(fine.settled());
+        }
+        let solved = Solved::begun(air, &Resolution::FINEST, Some(&fine.solved), kept)?;
         let hidden = solved.optics.in_peaks().map(|share| HIDDEN * share);
-        Ok(Self { solved, coarser: usual.solved, hidden }.settled())
+        Ok(Self { solved, coarser: fine.solved, hidden }.settled())
     }
 
     /// With nothing kept from which others would begin.

@@ -7,11 +7,12 @@
 //! functions are those of the direction itself.
 //!
 //! How many looks that takes is found out. Of a part between two edges nine rings are looked at, and those between them; where the nine
-//! do not give the radiance of the others to the asked error, each half is such a part. Where halves do not end, every
-//! direction is looked at by itself.
+//! do not give the radiance of the others to the asked error, each half is such a part, at half as many azimuths if these show the others.
+//! Where halves do not end, every direction is looked at by itself.
 
 use super::line::MOST_SPECIES;
-use super::view::{Look, Seen};
+use super::sight::Around;
+use super::view::Seen;
 use super::{Optics, Solved};
 use crate::geometry::Place;
 use crate::polarisation::{Frame, Stokes};
@@ -28,8 +29,8 @@ const AZIMUTHS: (usize, usize) = (4, 64);
 const RINGS: usize = 8;
 
 /// Parts that lie between two edges, and how often each may be halved.
-const PARTS: usize = 4;
-const HALVES: u32 = 5;
+const PARTS: usize = 2;
+const HALVES: u32 = 6;
 
 /// Nodes of a polynomial.
 const NODES: usize = 6;
@@ -205,14 +206,12 @@ struct Survey<'a, const L: usize> {
 impl<const L: usize> Survey<'_, L> {
     /// Looks from one azimuth to its opposite, at every node or between those of half as many.
     fn ring(&self, zenith: f64, azimuths: usize, only_odd: bool) -> Vec<Looked<L>> {
-        let sunlight = &self.solved.optics.columns;
         let Panorama { from, sun, .. } = *self.all;
-        let look = |i: usize| {
-            let direction = self.all.direction(zenith, i as f64 / azimuths as f64);
-            let look = Look { solved: self.solved, from, direction, sun, single: false, sunlight };
-            (direction, vectorised::<L, _>(look))
-        };
-        (0..=azimuths).filter(|i| !only_odd || i % 2 == 1).map(look).collect()
+        let turns = (0..=azimuths).filter(|i| !only_odd || i % 2 == 1);
+        let directions: Vec<_> = turns.map(|i| self.all.direction(zenith, i as f64 / azimuths as f64)).collect();
+        let around = Around { solved: self.solved, from, directions: &directions, sun };
+        let seen = vectorised::<L, _>(around);
+        directions.into_iter().zip(seen).collect()
     }
 
     /// A part, or its halves, which may be halved so often.
@@ -258,10 +257,30 @@ impl<const L: usize> Survey<'_, L> {
         let second = all.split_off(RINGS);
         all.push(second[0].clone());
         let middle = 0.5 * (ends.0 + ends.1);
-        both(
-            || self.halves(between, (ends.0, middle), azimuths, all, halves - 1),
-            || self.halves(between, (middle, ends.1), azimuths, second, halves - 1),
-        )
+        let half = |ends: (f64, f64), rings: Vec<Vec<Looked<L>>>| {
+            let (azimuths, rings) = self.thinned(azimuths, rings);
+            self.halves(between, ends, azimuths, rings, halves - 1)
+        };
+        both(|| half((ends.0, middle), all), || half((middle, ends.1), second))
+    }
+
+    /// Rings without every other azimuth as often as those that are left show the others.
+    fn thinned(&self, azimuths: usize, rings: Vec<Vec<Looked<L>>>) -> (usize, Vec<Vec<Looked<L>>>) {
+        let (mut azimuths, mut rings) = (azimuths, rings);
+        while azimuths > AZIMUTHS.0 {
+            let half = azimuths / 2;
+            let turn = |j: usize| (2 * j + 1) as f64 / azimuths as f64;
+            let few: Vec<Vec<_>> = rings.iter().map(|ring| ring.iter().copied().step_by(2).collect()).collect();
+            let are_shown = |(few, ring): (&Vec<Looked<L>>, &Vec<Looked<L>>)| {
+                let nodes = self.nodes(half, std::slice::from_ref(few));
+                (0..half).all(|j| self.is_good(&nodes, [0.0, turn(j)], &ring[2 * j + 1]))
+            };
+            if !few.iter().zip(&rings).all(are_shown) {
+                break;
+            }
+            (azimuths, rings) = (half, few);
+        }
+        (azimuths, rings)
     }
 
     /// How many intervals of azimuth a ring needs.
@@ -283,6 +302,7 @@ impl<const L: usize> Survey<'_, L> {
     fn nodes(&self, azimuths: usize, rings: &[Vec<Looked<L>>]) -> Nodes<L> {
         let species = self.solved.optics.species.len();
         let polarised = self.solved.is_polarised();
+        let rows = if polarised { 4 + 2 * species } else { 2 + species };
         let single = |row: &[f64; L]| row.map(|value| value as f32);
         let of = |(_, seen): &Looked<L>| {
             let mut values = vec![single(&seen.rest), single(&seen.peaks)];
@@ -294,13 +314,7 @@ impl<const L: usize> Survey<'_, L> {
             values
         };
         let values = rings.iter().flatten().flat_map(of).collect();
-        Nodes {
-            rings: rings.len() - 1,
-            azimuths,
-            values,
-            rows: if polarised { 4 + 2 * species } else { 2 + species },
-            species,
-        }
+        Nodes { rings: rings.len() - 1, azimuths, values, rows, species }
     }
 
     /// Whether nodes show what is seen.
@@ -428,28 +442,40 @@ impl<const L: usize> NullaryFnOnce for Interpolation<'_, L> {
 impl<const L: usize> Nodes<L> {
     #[inline(always)]
     fn seen(&self, [ring, azimuth]: [f64; 2]) -> Seen<L> {
-        let nodes = self;
-        let (along, across) = (inside(nodes.rings, ring), mirrored(nodes.azimuths, azimuth));
+        let (along, across) = (inside(self.rings, ring), mirrored(self.azimuths, azimuth));
+        let (mut places, mut even, mut odd) = ([0; NODES * NODES], [0.0; NODES * NODES], [0.0; NODES * NODES]);
+        for i in 0..NODES {
+            for k in 0..NODES {
+                let ((ring, a), (azimuth, b, c)) = (along[i], across[k]);
+                places[i * NODES + k] = (ring * (self.azimuths + 1) + azimuth) * self.rows;
+                even[i * NODES + k] = (a * b) as f32;
+                odd[i * NODES + k] = (a * c) as f32;
+            }
+        }
         let mut values = [[0.0_f32; L]; 2 * MOST_SPECIES + 4];
-        let last = 3 + 2 * nodes.species;
-        for (row, value) in values.iter_mut().enumerate().take(nodes.rows) {
-            let mut sum = [0.0; L];
-            for (ring, a) in along {
-                for (azimuth, b, odd) in across {
-                    // The last row is U.
-                    let weight = (a * if row == last { odd } else { b }) as f32;
-                    let seen = &nodes.values[(ring * (nodes.azimuths + 1) + azimuth) * nodes.rows + row];
-                    for j in 0..L {
-                        sum[j] += weight * seen[j];
-                    }
+        let last = 3 + 2 * self.species;
+        for (row, value) in values.iter_mut().enumerate().take(self.rows) {
+            // The last row is U.
+            let weights = if row == last { &odd } else { &even };
+            // Two sums, so that neither waits for itself.
+            let (mut first, mut second) = ([0.0_f32; L], [0.0_f32; L]);
+            for k in 0..NODES * NODES / 2 {
+                let (a, b) = (&self.values[places[2 * k] + row], &self.values[places[2 * k + 1] + row]);
+                for j in 0..L {
+                    first[j] += weights[2 * k] * a[j];
+                }
+                for j in 0..L {
+                    second[j] += weights[2 * k + 1] * b[j];
                 }
             }
-            *value = sum;
+            for j in 0..L {
+                value[j] = first[j] + second[j];
+            }
         }
         let [rest, peaks, others @ ..] = values.map(|row| row.map(f64::from));
         let (mut once, mut turned) = ([[0.0; L]; MOST_SPECIES], [[0.0; L]; MOST_SPECIES]);
-        once[..nodes.species].copy_from_slice(&others[..nodes.species]);
-        turned[..nodes.species].copy_from_slice(&others[nodes.species..2 * nodes.species]);
-        Seen { rest, peaks, once, turned, linear: [others[2 * nodes.species], others[2 * nodes.species + 1]] }
+        once[..self.species].copy_from_slice(&others[..self.species]);
+        turned[..self.species].copy_from_slice(&others[self.species..2 * self.species]);
+        Seen { rest, peaks, once, turned, linear: [others[2 * self.species], others[2 * self.species + 1]] }
     }
 }

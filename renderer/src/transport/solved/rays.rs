@@ -85,10 +85,10 @@ fn line<const L: usize>(
     let ahead = setup.optics.onward.along(Place::above(grid.levels[level]), direction);
     for (i, ends) in places.windows(2).enumerate() {
         let rule = Rule { fine: true, least: 1.0, bends: &grid.bends };
-        let stencil = Stencil::around(i, &places, &grid.walls);
-        let spread = Spread { places: &places, stencil, weights: &mut weights };
+        let polynomials = Stencil::around(i, &places, &grid.walls).through(&places);
+        let spread = Spread { polynomials, weights: &mut weights };
         let linear = polarised.then(|| Dipoles {
-            to: Spread { places: &places, stencil, weights: &mut dipoles },
+            to: Spread { polynomials, weights: &mut dipoles },
             optics: setup.optics,
             ahead: &ahead,
         });

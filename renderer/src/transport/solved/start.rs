@@ -77,7 +77,7 @@ fn measure(altitude: f64) -> f64 {
 fn levels_about(at: f64, places: &[Crossing], walls: &[bool]) -> Vec<Shared> {
     let interval = places.partition_point(|place| place.s <= at).clamp(1, places.len() - 1) - 1;
     let stencil = Stencil::around(interval, places, walls);
-    let weights = stencil.weights(places, at);
+    let weights = stencil.through(places).weights(at);
     (stencil.first..).zip(weights).take(stencil.count).map(|(level, weight)| (level, weight as f32)).collect()
 }
 

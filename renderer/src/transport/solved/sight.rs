@@ -1,0 +1,448 @@
+//! A line of sight. What does not depend on the sun is found once for all that have the same zenith angle: where the line crosses the levels, the
+//! weights of the table's sources there, and the points at which sunlight is summed while the sun is high.
+
+use super::aureole::Through;
+use super::line::{Crossing, Rule, Spread, Stencil, Take, crossings, quadrature};
+use super::onward::{Ahead, Dipoles};
+use super::view::Seen;
+use super::{Reach, Solved};
+use crate::atmosphere::{Chord, Columns};
+use crate::geometry::Place;
+use crate::vectors::exp_minus;
+use glam::DVec3;
+use pulp::NullaryFnOnce;
+use std::f64::consts::FRAC_1_PI;
+use std::ops::Range;
+
+/// A line of sight before it has an azimuth.
+pub(super) struct Sight<'a, const L: usize> {
+    pub(super) solved: &'a Solved<L>,
+    pub(super) from: Place,
+    single: bool,
+    chord: Chord<'a, L>,
+    /// It passes through the air in front of space.
+    passes: bool,
+    through: Option<Through<'a, L>>,
+    ahead: Option<Ahead<'a, L>>,
+    /// Intervals between crossings, on one side of the perigee each, up to where nothing more arrives, and which parts are theirs.
+    intervals: Vec<((f64, f64), Range<usize>)>,
+    points: Points<L>,
+    /// Where it crosses levels, what counts there, and what is scattered there of each degree: harmonics and sources in turn.
+    sources: Vec<(Crossing, Reach)>,
+    harmonics: Vec<f64>,
+    scattered: Vec<[f32; L]>,
+    /// The same for Q and U: where, and the weights of dipoles.
+    dipoles: Vec<(Crossing, [[f64; L]; 2])>,
+}
+
+/// Points of a line at which what is scattered is known, by parts.
+#[derive(Default)]
+struct Points<const L: usize> {
+    /// The ends of each part and the number of points up to its end.
+    parts: Vec<((f64, f64), usize)>,
+    /// Distances from the perigee.
+    at: Vec<f64>,
+    /// Of each point what each species scatters.
+    scattered: Vec<[f64; L]>,
+}
+
+impl<const L: usize> Take<L> for Points<L> {
+    #[inline(always)]
+    fn begin(&mut self, part: (f64, f64)) {
+        self.parts.push((part, self.at.len()));
+    }
+
+    #[inline(always)]
+    fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
+        self.at.push(s);
+        self.scattered.extend_from_slice(scattered);
+        if let Some((_, end)) = self.parts.last_mut() {
+            *end = self.at.len();
+        }
+    }
+}
+
+impl<'a, const L: usize> Sight<'a, L> {
+    /// The line from a place in a unit direction; none where it meets no air.
+    #[inline(always)]
+    pub(super) fn new(solved: &'a Solved<L>, from: Place, direction: DVec3, single: bool) -> Option<Self> {
+        let optics = &*solved.optics;
+        let chord = optics.columns.chord(from, direction)?;
+        let (begin, end) = chord.ends();
+        // All crossings of the line, so that the polynomials also reach over the observer.
+        // The other side of a line that cuts the planet is beyond it.
+        let backwards = if begin < 0.0 || chord.perigee() >= 0.0 { f64::NEG_INFINITY } else { 0.0 };
+        let places = crossings(&chord, &solved.grid.levels, backwards);
+        let species = optics.species.len();
+        let polarised = solved.is_polarised() && !single;
+        let mut all = Self {
+            solved,
+            from,
+            single,
+            chord,
+            passes: chord.perigee() > 0.0 && begin < 0.0,
+            through: if single { None } else { optics.aureole.along(from, direction) },
+            ahead: polarised.then(|| optics.onward.along(from, direction)),
+            intervals: Vec::with_capacity(places.len()),
+            points: Points::default(),
+            sources: Vec::with_capacity(places.len()),
+            harmonics: Vec::new(),
+            scattered: Vec::new(),
+            dipoles: Vec::new(),
+        };
+        let mut weights = vec![[0.0; L]; species * places.len()];
+        let mut dipoles = vec![[0.0; L]; if polarised { 2 * places.len() } else { 0 }];
+        'line: for i in 0..places.len().saturating_sub(1) {
+            let (mut a, end) = (places[i].s.max(begin), places[i + 1].s.min(end));
+            let polynomials = Stencil::around(i, &places, &solved.grid.walls).through(&places);
+            for b in [0.0_f64.min(end), end] {
+                if b <= a {
+                    continue;
+                }
+                let first = all.points.parts.len();
+                let spread = (!single).then_some(Spread { polynomials, weights: &mut weights });
+                let linear = all.ahead.as_ref().map(|ahead| Dipoles {
+                    to: Spread { polynomials, weights: &mut dipoles },
+                    optics,
+                    ahead,
+                });
+                let rule = all.chord_rule(a, b);
+                let mut taker = ((&mut all.points, spread), linear);
+                if !quadrature(&chord, optics, (a, b), rule, &mut taker) {
+                    break 'line;
+                }
+                all.intervals.push(((a, b), first..all.points.parts.len()));
+                a = b;
+            }
+        }
+        if !single {
+            let mut harmonics = Vec::with_capacity(optics.moments.count());
+            for (place, weights) in places.iter().zip(weights.chunks_exact(species.max(1))) {
+                let Some(reach) = optics.reach(weights) else { continue };
+                all.sources.push((*place, reach));
+                optics.moments.at(all.zenith(place), &mut harmonics);
+                all.harmonics.extend_from_slice(&harmonics);
+                let from = all.scattered.len();
+                all.scattered.resize(from + optics.moments.width(), [0.0; L]);
+                optics.add_sources(weights, &mut all.scattered[from..from + reach.sources]);
+            }
+            all.dipoles = places.iter().copied().zip(dipoles.as_chunks::<2>().0.iter().copied()).collect();
+        }
+        Some(all)
+    }
+
+    /// How an interval is integrated with the sun high.
+    #[inline(always)]
+    fn chord_rule(&self, a: f64, b: f64) -> Rule<'a> {
+        let turns = a.abs().min(b.abs()) < 1.0 && a.abs().max(b.abs()) > 2e4;
+        Rule { fine: self.passes, least: if turns { 3.0 } else { 1.0 }, bends: &self.solved.grid.bends }
+    }
+
+    /// Cosine of the line's zenith angle at a crossing.
+    #[inline(always)]
+    fn zenith(&self, place: &Crossing) -> f64 {
+        (place.s / self.solved.grid.level_radius(place.level)).clamp(-1.0, 1.0)
+    }
+
+    /// What is seen in a direction of that zenith angle with a sun, whose light arrives through these columns.
+    #[inline(always)]
+    pub(super) fn seen(&self, direction: DVec3, sun: DVec3, sunlight: &Columns<L>) -> Seen<L> {
+        let Self { solved, from, chord, .. } = self;
+        let optics = &*solved.optics;
+        let mut seen = Seen::NOTHING;
+        let lit = Lit { sight: self, direction, sun, sunlight };
+        let cuts = lit.cuts();
+        let mut taker = Taker { lit: &lit, seen: &mut seen, depths: &mut Depths::none() };
+        'line: for ((from, to), parts) in &self.intervals {
+            let (mut a, end) = (*from, *to);
+            if lit.is_high(a, end) {
+                let before = parts.start.checked_sub(1).map_or(0, |last| self.points.parts[last].1);
+                let mut first = before;
+                for &(part, last) in &self.points.parts[parts.clone()] {
+                    taker.begin(part);
+                    let points = self.points.at[first..last]
+                        .iter()
+                        .zip(self.points.scattered[first * optics.species.len()..].chunks_exact(optics.species.len()));
+                    for (s, scattered) in points {
+                        taker.take(*s, scattered);
+                    }
+                    first = last;
+                }
+                continue;
+            }
+            for b in cuts.iter().copied().chain([end]) {
+                let b = b.min(end);
+                if b > a {
+                    if !quadrature(chord, optics, (a, b), lit.rule(a, b), &mut taker) {
+                        break 'line;
+                    }
+                    a = b;
+                }
+            }
+        }
+        let (towards, count, width) = (direction.dot(sun), optics.moments.count(), optics.moments.width());
+        let rows = self.harmonics.chunks_exact(count.max(1)).zip(self.scattered.chunks_exact(width.max(1)));
+        for ((place, reach), rows) in self.sources.iter().zip(rows) {
+            let r = solved.grid.level_radius(place.level);
+            let there = (lit.position(place.s).dot(sun) / r).clamp(-1.0, 1.0);
+            let source = solved.gathered(&[(place.level, 1.0)], [self.zenith(place), there, towards], *reach, rows);
+            add(&mut seen.rest, &source.map(f64::from), &[1.0; L]);
+        }
+        for (place, weights) in &self.dipoles {
+            lit.add_linear(place, weights, &mut seen.linear);
+        }
+        if chord.ends_on_ground() {
+            let through = exp_minus(chord.total());
+            let foot = chord.foot(*from, direction);
+            let mut light = if self.single { [0.0; L] } else { solved.diffuse_irradiance(foot, sun) };
+            let cosine = foot.up.dot(sun);
+            if cosine > 0.0
+                && let Some(arrives) = sunlight.transmittance(foot, sun)
+            {
+                for j in 0..L {
+                    light[j] += cosine * arrives[j];
+                }
+            }
+            for j in 0..L {
+                seen.rest[j] += through[j] * optics.albedo[j] * FRAC_1_PI * light[j];
+            }
+        }
+        seen
+    }
+}
+
+/// Looks in directions of one zenith angle.
+pub(super) struct Around<'a, const L: usize> {
+    pub(super) solved: &'a Solved<L>,
+    pub(super) from: Place,
+    pub(super) directions: &'a [DVec3],
+    pub(super) sun: DVec3,
+}
+
+impl<const L: usize> NullaryFnOnce for Around<'_, L> {
+    type Output = Vec<Seen<L>>;
+
+    #[inline(always)]
+    fn call(self) -> Vec<Seen<L>> {
+        let Self { solved, from, directions, sun } = self;
+        let sight = Sight::new(solved, from, directions[0], false);
+        let sunlight = &solved.optics.columns;
+        // (No closures, since those are not always inlined.)
+        let mut all = vec![Seen::NOTHING; directions.len()];
+        if let Some(sight) = sight {
+            for (seen, direction) in all.iter_mut().zip(directions) {
+                *seen = sight.seen(*direction, sun, sunlight);
+            }
+        }
+        all
+    }
+}
+
+/// Takes sunlight scattered once.
+struct Taker<'a, const L: usize> {
+    lit: &'a Lit<'a, L>,
+    seen: &'a mut Seen<L>,
+    depths: &'a mut Depths<L>,
+}
+
+/// A place and the depths there.
+type End<const L: usize> = (f64, [f64; L]);
+
+/// Depths of peaks along a part of a line, as far as they are known: taken for linear between its ends.
+struct Depths<const L: usize> {
+    /// The part, and what is known at its ends: places and depths.
+    part: (f64, f64),
+    ends: [Option<End<L>>; 2],
+}
+
+impl<const L: usize> Depths<L> {
+    fn none() -> Self {
+        Self { part: (0.0, 0.0), ends: [None; 2] }
+    }
+
+    /// Another part; where it goes on from the last, it begins with what is known of its end.
+    #[inline(always)]
+    fn begin(&mut self, part: (f64, f64)) {
+        let goes_on = self.part.1 == part.0;
+        self.ends = [self.ends[1].filter(|_| goes_on), None];
+        self.part = part;
+    }
+
+    /// At a place of the part, once both ends are known.
+    #[inline(always)]
+    fn at(&self, s: f64) -> [f64; L] {
+        let mut depths = [0.0; L];
+        if let [Some((a, at_a)), Some((b, at_b))] = &self.ends {
+            let share = (s - a) / (b - a);
+            for j in 0..L {
+                depths[j] = at_a[j] + share * (at_b[j] - at_a[j]);
+            }
+        }
+        depths
+    }
+}
+
+impl<const L: usize> Take<L> for Taker<'_, L> {
+    #[inline(always)]
+    fn begin(&mut self, part: (f64, f64)) {
+        self.depths.begin(part);
+    }
+
+    #[inline(always)]
+    fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
+        let Lit { sight, direction, sun, sunlight } = *self.lit;
+        let place = |s: f64| sight.chord.place(sight.from, direction, s);
+        let Some(sunlight) = sunlight.transmittance(place(s), sun) else {
+            return;
+        };
+        let depth = match &sight.through {
+            Some(through) => {
+                for (end, at) in self.depths.ends.iter_mut().zip(inside(self.depths.part)) {
+                    if end.is_none() {
+                        *end = Some((at, through.depth(at, place(at), sun)));
+                    }
+                }
+                Some(self.depths.at(s))
+            }
+            None => None,
+        };
+        let more = match &sight.ahead {
+            Some(ahead) => Some(ahead.more(s)),
+            None => None,
+        };
+        let once = self.seen.once.iter_mut().zip(&mut self.seen.turned);
+        for (((once, turned), scattered), one) in once.zip(scattered).zip(&sight.solved.optics.species) {
+            let arrives: [f64; L] = std::array::from_fn(|j| scattered[j] * sunlight[j]);
+            add(once, &arrives, &[1.0; L]);
+            if let Some(more) = &more {
+                add(turned, &arrives, more);
+            }
+            if let Some(depth) = &depth
+                && !one.is_molecular()
+            {
+                add(&mut self.seen.peaks, &arrives, depth);
+            }
+        }
+    }
+}
+
+/// Adds products to a sum, which is copied for the reason that [`add_product`](crate::vectors::add_product) has.
+#[inline(always)]
+fn add<const L: usize>(sum: &mut [f64; L], a: &[f64; L], b: &[f64; L]) {
+    let mut total = *sum;
+    for j in 0..L {
+        total[j] += a[j] * b[j];
+    }
+    *sum = total;
+}
+
+/// Cosine of the sun's zenith angle below which its light may change fast along a line.
+const LOW_SUN: f64 = 0.1;
+
+/// Change of the altitude at which sunlight passes the planet, in one part of a line, as a share of that of the top, and most parts for it.
+const PASSES: f64 = 0.02;
+const MOST_PASSED: f64 = 8.0;
+
+/// Changes of its optical depth that Gauss' rules of two and of four nodes bear (1e-6 and 4e-6), most parts for them, and a
+/// transmittance that does not count.
+const COARSE_DEPTH: f64 = 0.25;
+const FINE_DEPTH: f64 = 3.0;
+const MOST_GRAZED: f64 = 16.0;
+const DIM: f64 = 1e-9;
+
+/// The ends of an interval but a little inside, for they may be the edge of the shadow.
+#[inline(always)]
+fn inside((a, b): (f64, f64)) -> [f64; 2] {
+    const INSET: f64 = 1e-3;
+    [a + INSET * (b - a), b - INSET * (b - a)]
+}
+
+/// A line of sight with an azimuth and a sun.
+pub(super) struct Lit<'a, const L: usize> {
+    pub(super) sight: &'a Sight<'a, L>,
+    pub(super) direction: DVec3,
+    pub(super) sun: DVec3,
+    sunlight: &'a Columns<L>,
+}
+
+impl<const L: usize> Lit<'_, L> {
+    /// Where the line is divided: at the edge of the planet's shadow, and where the sunlight that arrives touches the edge of a
+    /// layer on its way, from where on it is taken from a beam as the root of the distance.
+    fn cuts(&self) -> Vec<f64> {
+        let edges = std::iter::once(&0.0).chain(&self.sight.solved.grid.edges);
+        let touched = edges.flat_map(|altitude| self.grazes(*altitude));
+        let mut cuts: Vec<f64> = touched.filter(|s| s.is_finite() && self.position(*s).dot(self.sun) < 0.0).collect();
+        cuts.sort_by(f64::total_cmp);
+        cuts
+    }
+
+    /// Where the line passes the cylinder about the axis to the sun of the light that passes the planet at an altitude:
+    /// |p|^2 - (p . sun)^2 = (R + h)^2, a quadratic in the distance from the perigee. Infinite where it does not.
+    fn grazes(&self, altitude: f64) -> [f64; 2] {
+        let radius = self.sight.solved.grid.radius;
+        let perigee = self.position(0.0);
+        let across = perigee - self.sun * perigee.dot(self.sun);
+        let along = self.direction - self.sun * self.direction.dot(self.sun);
+        let (a, b) = (along.length_squared(), across.dot(along));
+        let c = across.length_squared() - (radius + altitude).powi(2);
+        let root = b * b - a * c;
+        if a < 1e-12 || root < 0.0 {
+            return [f64::INFINITY; 2];
+        }
+        let root = root.sqrt();
+        [(-b - root) / a, (-b + root) / a]
+    }
+
+    /// The ends of an interval, as far inside as [`inside`] has them.
+    #[inline(always)]
+    fn ends(&self, a: f64, b: f64) -> [Place; 2] {
+        let sight = self.sight;
+        inside((a, b)).map(|s| sight.chord.place(sight.from, self.direction, s))
+    }
+
+    /// Whether sunlight changes little along an interval.
+    #[inline(always)]
+    fn is_high(&self, a: f64, b: f64) -> bool {
+        self.ends(a, b).iter().all(|place| place.up.dot(self.sun) > LOW_SUN)
+    }
+
+    /// How an interval is integrated where the sun is low: finely enough for the altitude at which its light passes the planet, and for
+    /// what the air leaves of it.
+    #[inline(always)]
+    fn rule(&self, a: f64, b: f64) -> Rule<'_> {
+        let sight = self.sight;
+        let Rule { fine, least, bends } = sight.chord_rule(a, b);
+        let ends = self.ends(a, b);
+        let radius = sight.solved.grid.radius;
+        let [at_a, at_b] = ends.map(|place| {
+            let position = place.up * (radius + place.altitude_m);
+            (position - self.sun * position.dot(self.sun)).length()
+        });
+        // Sunlight that passes through a layer with bends changes faster.
+        let step = if bends.is_empty() { PASSES } else { 0.3 * PASSES };
+        let passed = (at_a - at_b).abs() / (step * sight.solved.optics.medium.top_m());
+        let grazed = self.grazed(ends);
+        let parts = passed.ceil().min(MOST_PASSED).max((grazed / FINE_DEPTH).ceil().min(MOST_GRAZED));
+        Rule { fine: fine || grazed > COARSE_DEPTH, least: parts.max(least), bends }
+    }
+
+    /// How much the optical depth of sunlight changes between two places, as far as it counts. Gauss' rule of four nodes is off by
+    /// d^8 T / 1.8e9 of a transmittance that falls by exp(-d) from T: so the change is weighted with T^(1/8).
+    #[inline(always)]
+    fn grazed(&self, ends: [Place; 2]) -> f64 {
+        let [from, to] = ends.map(|place| self.sunlight.transmittance(place, self.sun).unwrap_or([0.0; L]));
+        let mut most = 0.0_f64;
+        for (from, to) in from.into_iter().zip(to) {
+            let (low, high) = (from.min(to).max(DIM), from.max(to).max(DIM));
+            most = most.max((high / low).ln() * high.sqrt().sqrt().sqrt());
+        }
+        most
+    }
+
+    /// A point of the line, from the planet's centre.
+    #[inline(always)]
+    pub(super) fn position(&self, s: f64) -> DVec3 {
+        let Sight { solved, from, chord, .. } = self.sight;
+        from.up * (solved.grid.radius + from.altitude_m) + self.direction * chord.travelled(s)
+    }
+}
