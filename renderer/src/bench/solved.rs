@@ -21,6 +21,9 @@ const WAVELENGTHS: usize = 16;
 const DOME: (u32, u32) = (160, 32);
 const DOMES: u32 = 40;
 
+/// Every which pixel of a picture is looked at itself.
+const LOOKED_AT: usize = 23;
+
 /// Directions of the dome: zenith angles in degrees, at this many azimuths each.
 const ZENITHS: [f64; 9] = [2.0, 15.0, 30.0, 45.0, 60.0, 75.0, 83.0, 87.0, 89.5];
 const AZIMUTHS: u32 = 6;
@@ -54,10 +57,19 @@ pub struct Distance {
     pub worst: f64,
     /// [`FINER`] of the table's distance from a coarser one, as it is stated with pictures.
     pub stated: f64,
-    /// Seconds of one thread for a fisheye of 320 x 320 pixels, as exact as that.
-    pub picture_seconds: f64,
+    /// A fisheye of 320 x 320 pixels, as exact as that.
+    pub picture: Picture,
+}
+
+/// A picture from looks in few directions.
+#[derive(Debug, Clone, Copy)]
+pub struct Picture {
+    /// Seconds of one thread.
+    pub seconds: f64,
     /// Directions that were looked at for it.
     pub looks: usize,
+    /// Relative differences to looks at pixels themselves: root mean square and the largest, all wavelengths of every 23rd pixel.
+    pub off: [f64; 2],
 }
 
 /// Solves the atmosphere of a scene with that biome, and compares it for each sun with `paths` paths in each direction
@@ -80,7 +92,17 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
         let start = Instant::now();
         let seen = Panorama::new(&solved, from, sun, befitting(stated), &wanted);
         std::hint::black_box(directions.iter().map(|direction| seen.radiance(&solved, *direction)[0]).sum::<f64>());
-        (start.elapsed().as_secs_f64(), seen.looks())
+        let seconds = start.elapsed().as_secs_f64();
+        let (mut squares, mut worst, mut count) = (0.0, 0.0_f64, 0.0);
+        for direction in directions.iter().step_by(LOOKED_AT) {
+            let right = solved.radiance(from, *direction, sun, false);
+            for (found, right) in seen.radiance(&solved, *direction).into_iter().zip(right) {
+                let off = (found / right - 1.0).abs();
+                (squares, worst, count) = (squares + off * off, worst.max(off), count + 1.0);
+            }
+        }
+        let off: f64 = squares / count;
+        Picture { seconds, looks: seen.looks(), off: [off.sqrt(), worst] }
     };
     let shown = befitting(FINER * solved.difference(&coarse, from, towards(60.0, 0.0)));
     let dome: Vec<_> = (0..DOME.0 * DOME.1)
@@ -130,7 +152,7 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
             })
             .collect();
         let stated = FINER * solved.difference(&coarse, from, sun);
-        let (picture_seconds, looks) = alone.install(|| picture(sun, stated));
+        let picture = alone.install(|| picture(sun, stated));
         let mean = |of: &dyn Fn(&(f64, f64, f64)) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
         Distance {
             sun_zenith_deg,
@@ -139,8 +161,7 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
             mean: mean(&|row| row.2),
             worst: rows.iter().map(|row| row.2).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a }),
             stated,
-            picture_seconds,
-            looks,
+            picture,
         }
     });
     let size = (solved.convergence().0, solved.bytes());

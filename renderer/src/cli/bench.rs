@@ -288,21 +288,25 @@ fn solved(args: &BenchArgs) -> Result<Outcome, Failure> {
                 "mean": sun.mean,
                 "worst": sun.worst,
                 "stated": sun.stated,
-                "picture_320_core_s": sun.picture_seconds,
-                "looks": sun.looks,
+                "picture_320_core_s": sun.picture.seconds,
+                "looks": sun.picture.looks,
+                "picture_off_rms": sun.picture.off[0],
+                "picture_off_worst": sun.picture.off[1],
             });
             told.row(row, || {
                 println!(
                     "  sun zenith {:>2}  rms {:.3} % (noise {:.3} %), mean {:+.3} %, worst direction {:+.2} %; states {:.3} %; a picture of 320 x 320 {:.2} core-s \
-                     ({} looks)",
+                     ({} looks, {:.4} % off those of each pixel, at most {:.2} %)",
                     sun.sun_zenith_deg,
                     100.0 * sun.rms,
                     100.0 * sun.noise,
                     100.0 * sun.mean,
                     100.0 * sun.worst,
                     100.0 * sun.stated,
-                    sun.picture_seconds,
-                    sun.looks
+                    sun.picture.seconds,
+                    sun.picture.looks,
+                    100.0 * sun.picture.off[0],
+                    100.0 * sun.picture.off[1]
                 );
             });
         }

@@ -306,10 +306,7 @@ impl<const L: usize> Take<L> for Taker<'_, L> {
             }
             None => None,
         };
-        let more = match &sight.ahead {
-            Some(ahead) => Some(ahead.more(s)),
-            None => None,
-        };
+        let more = sight.ahead.as_ref().map(|ahead| ahead.more(s));
         let once = self.seen.once.iter_mut().zip(&mut self.seen.turned);
         for (((once, turned), scattered), one) in once.zip(scattered).zip(&sight.solved.optics.species) {
             let arrives: [f64; L] = std::array::from_fn(|j| scattered[j] * sunlight[j]);
