@@ -95,10 +95,6 @@ impl Lagrange {
 
 /// What becomes of the points of a quadrature along a chord. (No closure, since those are not always inlined.)
 pub(super) trait Take<const L: usize> {
-    /// What follows are points of another part of the line, from one place to the next.
-    #[inline(always)]
-    fn begin(&mut self, _part: (f64, f64)) {}
-
     /// A point, and of each species the weight of the point in m, times the transmittance to the chord's beginning, times the
     /// scattering coefficient.
     fn take(&mut self, s: f64, scattered: &[[f64; L]]);
@@ -106,22 +102,12 @@ pub(super) trait Take<const L: usize> {
 
 impl<T: Take<L>, const L: usize> Take<L> for &mut T {
     #[inline(always)]
-    fn begin(&mut self, part: (f64, f64)) {
-        (**self).begin(part);
-    }
-
-    #[inline(always)]
     fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
         (**self).take(s, scattered);
     }
 }
 
 impl<A: Take<L>, B: Take<L>, const L: usize> Take<L> for (A, Option<B>) {
-    #[inline(always)]
-    fn begin(&mut self, part: (f64, f64)) {
-        self.0.begin(part);
-    }
-
     #[inline(always)]
     fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
         self.0.take(s, scattered);
@@ -226,7 +212,6 @@ pub(super) fn quadrature<const L: usize>(
         let half = 0.5 * (end - start) / parts;
         for part in 0..parts as u32 {
             let middle = start + half * f64::from(2 * part + 1);
-            take.begin((middle - half, middle + half));
             for &(x, weight) in rule {
                 let s = middle + half * x;
                 let through = exp_minus(chord.point(s).depth);

@@ -24,7 +24,7 @@ pub(super) struct Sight<'a, const L: usize> {
     passes: bool,
     through: Option<Through<'a, L>>,
     ahead: Option<Ahead<'a, L>>,
-    /// Intervals between crossings, on one side of the perigee each, up to where nothing more arrives, and which parts are theirs.
+    /// Intervals between crossings, on one side of the perigee each, up to where nothing more arrives, and which points are theirs.
     intervals: Vec<((f64, f64), Range<usize>)>,
     points: Points<L>,
     /// Where it crosses levels, what counts there, and what is scattered there of each degree: harmonics and sources in turn.
@@ -35,11 +35,9 @@ pub(super) struct Sight<'a, const L: usize> {
     dipoles: Vec<(Crossing, [[f64; L]; 2])>,
 }
 
-/// Points of a line at which what is scattered is known, by parts.
+/// Points of a line at which what is scattered is known.
 #[derive(Default)]
 struct Points<const L: usize> {
-    /// The ends of each part and the number of points up to its end.
-    parts: Vec<((f64, f64), usize)>,
     /// Distances from the perigee.
     at: Vec<f64>,
     /// Of each point what each species scatters.
@@ -48,17 +46,9 @@ struct Points<const L: usize> {
 
 impl<const L: usize> Take<L> for Points<L> {
     #[inline(always)]
-    fn begin(&mut self, part: (f64, f64)) {
-        self.parts.push((part, self.at.len()));
-    }
-
-    #[inline(always)]
     fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
         self.at.push(s);
         self.scattered.extend_from_slice(scattered);
-        if let Some((_, end)) = self.parts.last_mut() {
-            *end = self.at.len();
-        }
     }
 }
 
@@ -99,7 +89,7 @@ impl<'a, const L: usize> Sight<'a, L> {
                 if b <= a {
                     continue;
                 }
-                let first = all.points.parts.len();
+                let first = all.points.at.len();
                 let spread = (!single).then_some(Spread { polynomials, weights: &mut weights });
                 let linear = all.ahead.as_ref().map(|ahead| Dipoles {
                     to: Spread { polynomials, weights: &mut dipoles },
@@ -111,7 +101,7 @@ impl<'a, const L: usize> Sight<'a, L> {
                 if !quadrature(&chord, optics, (a, b), rule, &mut taker) {
                     break 'line;
                 }
-                all.intervals.push(((a, b), first..all.points.parts.len()));
+                all.intervals.push(((a, b), first..all.points.at.len()));
                 a = b;
             }
         }
@@ -152,21 +142,14 @@ impl<'a, const L: usize> Sight<'a, L> {
         let mut seen = Seen::NOTHING;
         let lit = Lit { sight: self, direction, sun, sunlight };
         let cuts = lit.cuts();
-        let mut taker = Taker { lit: &lit, seen: &mut seen, depths: &mut Depths::none() };
-        'line: for ((from, to), parts) in &self.intervals {
+        let mut taker = Taker { lit: &lit, seen: &mut seen };
+        'line: for ((from, to), points) in &self.intervals {
             let (mut a, end) = (*from, *to);
             if lit.is_high(a, end) {
-                let before = parts.start.checked_sub(1).map_or(0, |last| self.points.parts[last].1);
-                let mut first = before;
-                for &(part, last) in &self.points.parts[parts.clone()] {
-                    taker.begin(part);
-                    let points = self.points.at[first..last]
-                        .iter()
-                        .zip(self.points.scattered[first * optics.species.len()..].chunks_exact(optics.species.len()));
-                    for (s, scattered) in points {
-                        taker.take(*s, scattered);
-                    }
-                    first = last;
+                let count = optics.species.len();
+                let rows = self.points.scattered[points.start * count..points.end * count].chunks_exact(count);
+                for (s, scattered) in self.points.at[points.clone()].iter().zip(rows) {
+                    taker.take(*s, scattered);
                 }
                 continue;
             }
@@ -242,70 +225,17 @@ impl<const L: usize> NullaryFnOnce for Around<'_, L> {
 struct Taker<'a, const L: usize> {
     lit: &'a Lit<'a, L>,
     seen: &'a mut Seen<L>,
-    depths: &'a mut Depths<L>,
-}
-
-/// A place and the depths there.
-type End<const L: usize> = (f64, [f64; L]);
-
-/// Depths of peaks along a part of a line, as far as they are known: taken for linear between its ends.
-struct Depths<const L: usize> {
-    /// The part, and what is known at its ends: places and depths.
-    part: (f64, f64),
-    ends: [Option<End<L>>; 2],
-}
-
-impl<const L: usize> Depths<L> {
-    fn none() -> Self {
-        Self { part: (0.0, 0.0), ends: [None; 2] }
-    }
-
-    /// Another part; where it goes on from the last, it begins with what is known of its end.
-    #[inline(always)]
-    fn begin(&mut self, part: (f64, f64)) {
-        let goes_on = self.part.1 == part.0;
-        self.ends = [self.ends[1].filter(|_| goes_on), None];
-        self.part = part;
-    }
-
-    /// At a place of the part, once both ends are known.
-    #[inline(always)]
-    fn at(&self, s: f64) -> [f64; L] {
-        let mut depths = [0.0; L];
-        if let [Some((a, at_a)), Some((b, at_b))] = &self.ends {
-            let share = (s - a) / (b - a);
-            for j in 0..L {
-                depths[j] = at_a[j] + share * (at_b[j] - at_a[j]);
-            }
-        }
-        depths
-    }
 }
 
 impl<const L: usize> Take<L> for Taker<'_, L> {
     #[inline(always)]
-    fn begin(&mut self, part: (f64, f64)) {
-        self.depths.begin(part);
-    }
-
-    #[inline(always)]
     fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
         let Lit { sight, direction, sun, sunlight } = *self.lit;
-        let place = |s: f64| sight.chord.place(sight.from, direction, s);
-        let Some(sunlight) = sunlight.transmittance(place(s), sun) else {
+        let at = sight.chord.place(sight.from, direction, s);
+        let Some(sunlight) = sunlight.transmittance(at, sun) else {
             return;
         };
-        let depth = match &sight.through {
-            Some(through) => {
-                for (end, at) in self.depths.ends.iter_mut().zip(inside(self.depths.part)) {
-                    if end.is_none() {
-                        *end = Some((at, through.depth(at, place(at), sun)));
-                    }
-                }
-                Some(self.depths.at(s))
-            }
-            None => None,
-        };
+        let depth = sight.through.as_ref().map(|through| through.depth(s, at, sun));
         let more = sight.ahead.as_ref().map(|ahead| ahead.more(s));
         let once = self.seen.once.iter_mut().zip(&mut self.seen.turned);
         for (((once, turned), scattered), one) in once.zip(scattered).zip(&sight.solved.optics.species) {
