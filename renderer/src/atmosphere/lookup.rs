@@ -12,7 +12,7 @@ pub(super) struct Lookup {
 impl Lookup {
     /// At least two increasing nodes.
     pub(super) fn new(nodes: Vec<f64>) -> Self {
-        let buckets = 4 * nodes.len();
+        let buckets = 16 * nodes.len();
         let scale = 1.0 / (nodes[nodes.len() - 1] - nodes[0]);
         let mut first = vec![0; buckets + 1];
         let mut cell = 0_u32;

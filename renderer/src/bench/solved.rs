@@ -7,7 +7,7 @@ use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::render::RenderError;
 use crate::sampling::Sampler;
-use crate::transport::{self, Estimator, FINER, Panorama, Problem, Resolution, Solved, befitting};
+use crate::transport::{self, Estimator, FINER, Panorama, Pixels, Problem, Resolution, Solved, befitting};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -90,7 +90,7 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
     let wanted: Vec<_> = directions.iter().step_by(20).copied().collect();
     let picture = |sun: DVec3, stated: f64| {
         let start = Instant::now();
-        let seen = Panorama::new(&solved, from, sun, befitting(stated), &wanted);
+        let seen = Panorama::new(&solved, from, sun, befitting(stated), Pixels { directions: &wanted, each: 20 });
         std::hint::black_box(directions.iter().map(|direction| seen.radiance(&solved, *direction)[0]).sum::<f64>());
         let seconds = start.elapsed().as_secs_f64();
         let (mut squares, mut worst, mut count) = (0.0, 0.0_f64, 0.0);
@@ -113,7 +113,7 @@ pub fn measure(data: &Data, biome: Option<Biome>, suns: &[f64], paths: u64) -> R
     let start = Instant::now();
     for frame in 0..DOMES {
         let sun = towards(10.0 + 60.0 * f64::from(frame) / f64::from(DOMES), 0.0);
-        let seen = Panorama::new(&solved, from, sun, shown, &dome);
+        let seen = Panorama::new(&solved, from, sun, shown, Pixels { directions: &dome, each: 1 });
         std::hint::black_box(dome.par_iter().map(|direction| seen.radiance(&solved, *direction)[0]).sum::<f64>());
     }
     let domes_per_second = f64::from(DOMES) / start.elapsed().as_secs_f64();

@@ -14,7 +14,7 @@ use crate::scene::{Scene, SceneError, SunShape};
 use crate::spectrum::{Packet, Wavelengths};
 use crate::transport::rungs::{Cheap, Stated};
 use crate::transport::{
-    self, Certificate, Estimator, Method, Panorama, Problem, Resolution, SolveError, Solved, Tables, befitting,
+    self, Certificate, Estimator, Method, Panorama, Pixels, Problem, Resolution, SolveError, Solved, Tables, befitting,
 };
 use glam::DVec3;
 use std::fmt::Debug;
@@ -29,6 +29,8 @@ pub(crate) const MOST_ERROR: f64 = 0.1;
 pub(super) struct Wanted {
     /// Of many of its pixels, if it has many.
     pub(super) shown: Vec<DVec3>,
+    /// For how many samples each of those stands.
+    pub(super) each: usize,
     /// Of some, evenly, in which its tables are judged.
     pub(super) judged: Vec<DVec3>,
 }
@@ -182,7 +184,8 @@ fn seen<const L: usize>(
     let shown = befitting(error.unwrap_or(asked));
     let solved = grids.solved();
     let suns = solved.suns(place, sun).into_iter();
-    Ok((error, suns.map(|sun| Panorama::new(solved, place, sun, shown, &wanted.shown)).collect()))
+    let pixels = Pixels { directions: &wanted.shown, each: wanted.each };
+    Ok((error, suns.map(|sun| Panorama::new(solved, place, sun, shown, pixels)).collect()))
 }
 
 /// A packet of wavelengths, whatever the number of its lanes; slices are as long as

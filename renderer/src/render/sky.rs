@@ -488,10 +488,11 @@ fn looked_at(scene: &Scene) -> Wanted {
     let judged = spread(&camera, (width, height)).filter(|direction| direction.z <= highest).take(JUDGED).collect();
     let pixels = width as usize * height as usize;
     if pixels < PANORAMIC {
-        return Wanted { shown: Vec::new(), judged };
+        return Wanted { shown: Vec::new(), each: 1, judged };
     }
     let step = ((pixels / PANORAMIC) as f64).sqrt().max(1.0) as usize;
     let rows = (0..height).step_by(step).flat_map(|y| (0..width).step_by(step).map(move |x| (x, y)));
     let shown = rows.filter_map(|(x, y)| camera.direction(f64::from(x) + 0.5, f64::from(y) + 0.5)).collect();
-    Wanted { shown, judged }
+    let samples = scene.spp.unwrap_or_else(|| scene.default_spp()) as usize;
+    Wanted { shown, each: step * step * samples, judged }
 }

@@ -9,7 +9,7 @@ use crate::bench::{self, Case, EYE_M, PIXELS, SHAPE, fisheye, towards};
 use crate::data::Data;
 use crate::geometry::Place;
 use crate::render::{RenderError, certify_table};
-use crate::transport::{Estimator, Fineness, Panorama, SolveError, Solved};
+use crate::transport::{Estimator, Fineness, Panorama, Pixels, SolveError, Solved};
 use std::time::Instant;
 
 /// Of each of [`bench::cases`] what it is, and the core-seconds that a picture takes Mitsuba 3 to a standard error of 1 %: measured once on one
@@ -76,7 +76,7 @@ fn measured(case: &Case) -> Result<(f64, Vec<[f64; 2]>), RenderError> {
         let start = Instant::now();
         let pixels = fisheye();
         let solved = Solved::new(&medium, SHAPE, [bench::ALBEDO], &grid.resolution())?;
-        let seen = Panorama::new(&solved, from, sun, SHOWN, &pixels);
+        let seen = Panorama::new(&solved, from, sun, SHOWN, Pixels { directions: &pixels, each: 1 });
         let sum: f64 = pixels.iter().map(|direction| seen.radiance(&solved, *direction)[0]).sum();
         std::hint::black_box(sum);
         let seconds = start.elapsed().as_secs_f64();

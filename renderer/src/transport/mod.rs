@@ -30,7 +30,7 @@ use glam::DVec3;
 pub use radiation::Pair;
 use radiation::{Both, Polarised, Radiation, Scalar};
 pub use solved::{
-    Certificate, Certified, FINER, Fan, Fineness, Panorama, Resolution, SolveError, Solved, Tables, befitting,
+    Certificate, Certified, FINER, Fan, Fineness, Panorama, Pixels, Resolution, SolveError, Solved, Tables, befitting,
     covers_planet,
 };
 

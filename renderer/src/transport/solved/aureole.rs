@@ -15,12 +15,12 @@
 //! To the second order in T that is what Nakajima & Tanaka (1988) call IMS, with the true lengths of a round planet. T here is the mean
 //! over the line of sight, weighted by the light scattered once.
 
+use super::depths::{Along, Depths};
 use super::harmonics::{MOST_DEGREE, legendre};
 use super::line::MOST_SPECIES;
 use super::species::{Species, moments};
-use crate::atmosphere::{Chord, Columns, Component, Medium, MediumError, Tolerance};
+use crate::atmosphere::{Medium, MediumError};
 use crate::geometry::{Place, Shape};
-use crate::phase::Phase;
 use crate::vectors::{exp_minus, vectorised};
 use glam::DVec3;
 use pulp::NullaryFnOnce;
@@ -43,6 +43,8 @@ const LEAST: f64 = 1e-3;
 pub(super) struct Aureole<const L: usize> {
     /// Of each species.
     peaks: [Option<Peak<L>>; MOST_SPECIES],
+    /// What they scatter.
+    depths: Depths<L>,
     /// The highest degree that the table keeps.
     degree: usize,
 }
@@ -50,47 +52,36 @@ pub(super) struct Aureole<const L: usize> {
 /// The peak of a phase function.
 #[derive(Debug)]
 struct Peak<const L: usize> {
-    /// Depths of light scattered by it, at the wavelength where that is most, and the other wavelengths as shares.
-    columns: Columns<1>,
-    shares: [f64; L],
     /// f Q^(*n) in sr^-1 for n = 2 and further, by angle.
     folds: Vec<[[f64; L]; FOLDS]>,
-}
-
-/// A line through the peaks.
-pub(super) struct Through<'a, const L: usize> {
-    peaks: [Option<(&'a Peak<L>, Chord<'a, 1>)>; MOST_SPECIES],
 }
 
 impl<const L: usize> Aureole<L> {
     /// Without peaks.
     pub(super) fn none() -> Self {
-        Self { peaks: Default::default(), degree: 0 }
+        Self { peaks: Default::default(), depths: Depths::none(), degree: 0 }
     }
 
     /// Of the species of a medium from which the peaks were cut.
     pub(super) fn new(species: &[Species<L>], medium: &Medium<L>, shape: Shape) -> Result<Self, MediumError> {
         let mut peaks: [Option<Peak<L>>; MOST_SPECIES] = Default::default();
+        let mut scattered = Vec::new();
         for (peak, one) in peaks.iter_mut().zip(species) {
-            if one.straight().iter().any(|&f| f > LEAST) {
-                *peak = Some(Peak::new(one, medium, shape)?);
+            let straight = one.straight();
+            if straight.iter().any(|&f| f > LEAST) {
+                *peak = Some(Peak::new(one));
+                // What was cut off the cross-section: f of the whole, the rest is 1 - f of it.
+                scattered.push((one, std::array::from_fn(|j| one.scattering[j] * straight[j] / (1.0 - straight[j]))));
             }
         }
         let degree = species.iter().map(|one| one.coefficients.len()).max().unwrap_or(0).saturating_sub(1);
-        Ok(Self { peaks, degree })
+        Ok(Self { peaks, depths: Depths::new(&scattered, medium, shape)?, degree })
     }
 
     /// A line of sight; none where there are no peaks.
     #[inline(always)]
-    pub(super) fn along(&self, from: Place, direction: DVec3) -> Option<Through<'_, L>> {
-        if self.is_none() {
-            return None;
-        }
-        let mut peaks = [const { None }; MOST_SPECIES];
-        for (through, peak) in peaks.iter_mut().zip(&self.peaks) {
-            *through = peak.as_ref().and_then(|peak| Some((peak, peak.columns.chord(from, direction)?)));
-        }
-        Some(Through { peaks })
+    pub(super) fn along(&self, from: Place, direction: DVec3) -> Option<Along<'_, L>> {
+        if self.is_none() { None } else { Some(self.depths.along(from, direction)) }
     }
 
     /// What a direction, at an angle from the sun with this cosine, shows of the peaks, where their mean depth is T.
@@ -172,28 +163,9 @@ impl<const L: usize> Widened<'_, L> {
     }
 }
 
-impl<const L: usize> Through<'_, L> {
-    /// Depth of peaks from the eye to a point of the line and on to the sun.
-    #[inline(always)]
-    pub(super) fn depth(&self, s: f64, place: Place, sun: DVec3) -> [f64; L] {
-        let mut depth = [0.0; L];
-        for (peak, chord) in self.peaks.iter().flatten() {
-            let [before] = chord.point(s).depth;
-            let [after] = peak.columns.chord(place, sun).map_or([0.0], |chord| chord.total());
-            for j in 0..L {
-                depth[j] += (before + after) * peak.shares[j];
-            }
-        }
-        depth
-    }
-}
-
 impl<const L: usize> Peak<L> {
-    fn new(species: &Species<L>, medium: &Medium<L>, shape: Shape) -> Result<Self, MediumError> {
+    fn new(species: &Species<L>) -> Self {
         let straight = species.straight();
-        // What was cut off the cross-section: f of the whole, the rest is 1 - f of it.
-        let cut: [f64; L] = std::array::from_fn(|j| species.scattering[j] * straight[j] / (1.0 - straight[j]));
-        let (columns, shares) = depths(species, (medium, shape), cut)?;
         let chi = moments(&species.phase, LAST);
         let kept = species.coefficients.len();
         let peak: Vec<[f64; L]> =
@@ -205,23 +177,8 @@ impl<const L: usize> Peak<L> {
                 })
                 .collect();
         let folds = vectorised::<L, _>(Convolutions { peak: &peak, straight });
-        Ok(Self { columns, shares, folds })
+        Self { folds }
     }
-}
-
-/// Depths of light scattered by a species with these cross-sections, at the wavelength where they are most, and the other wavelengths as
-/// shares.
-pub(super) fn depths<const L: usize>(
-    species: &Species<L>,
-    (medium, shape): (&Medium<L>, Shape),
-    cross_sections: [f64; L],
-) -> Result<(Columns<1>, [f64; L]), MediumError> {
-    let most = cross_sections.iter().copied().fold(0.0, f64::max);
-    let density = medium.components()[species.component].density.clone();
-    let phase = Phase::Rayleigh { gamma: [0.0] };
-    let component = Component { density, scattering: [most], absorption: [0.0], phase };
-    let columns = Columns::new(&Medium::new(vec![component], medium.top_m())?, shape, Tolerance::SOLVE);
-    Ok((columns, cross_sections.map(|one| one / most)))
 }
 
 /// f Q^(*n) from the moments of Q, as work for vectors.

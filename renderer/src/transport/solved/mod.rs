@@ -18,6 +18,7 @@
 
 mod aureole;
 mod certify;
+mod depths;
 mod fan;
 mod file;
 mod first;
@@ -43,7 +44,7 @@ mod view;
 
 pub use certify::{Certificate, Certified, Fan};
 pub use grid::{Fineness, Resolution};
-pub use panorama::{Panorama, befitting};
+pub use panorama::{Panorama, Pixels, befitting};
 
 use super::directions;
 use crate::atmosphere::{Columns, Medium, MediumError, Tolerance};
@@ -366,7 +367,7 @@ impl<const L: usize> Solved<L> {
         let (species, medium) = species::scaled(medium, degree)?;
         let columns = Columns::new(&medium, shape, Tolerance::SOLVE);
         let aureole = Aureole::new(&species, &medium, shape)?;
-        let onward = if polarised { Onward::new(&species, &medium, shape)? } else { Onward::default() };
+        let onward = if polarised { Onward::new(&species, &medium, shape)? } else { Onward::none() };
         let moments = Moments::new(degree, polarised);
         let optics = Optics { moments, species, medium, columns, aureole, onward, albedo };
         Self::with(Arc::new(optics), radius_m, resolution, from, kept)
@@ -382,7 +383,7 @@ impl<const L: usize> Solved<L> {
         let grid = Grid::new(&medium, radius_m, &Resolution::FINE);
         let species = species::whole(&medium);
         let (moments, aureole) = (Moments::new(2, false), Aureole::none());
-        let onward = Onward::default();
+        let onward = Onward::none();
         let optics = Optics { moments, species, medium, columns, aureole, onward, albedo };
         let field = Field { moments: Vec::new(), ground: Vec::new() };
         let resolutions = vec![Resolution::FINE];

@@ -12,10 +12,10 @@
 //! alpha = 5/(24 pi) (h_2 - o), beta = -(5/8) int b1 (1 - c^2) dc. Higher degrees are lost, and so is what turns Q and U into radiance.
 
 use super::Optics;
-use super::aureole::depths;
-use super::line::{MOST_SPECIES, Take};
+use super::depths::{Along, Depths};
+use super::line::Take;
 use super::species::Species;
-use crate::atmosphere::{Chord, Columns, GAUSS_4, Medium, MediumError};
+use crate::atmosphere::{GAUSS_4, Medium, MediumError};
 use crate::geometry::{Place, Shape};
 use crate::phase::Phase;
 use crate::vectors::exp_minus;
@@ -25,10 +25,10 @@ use std::f64::consts::PI;
 /// A share less than this is none.
 const LEAST: f64 = 1e-3;
 
-/// What is scattered on, as optical depths: at the wavelength with most, and the other wavelengths as shares.
-#[derive(Debug, Default)]
+/// What is scattered on.
+#[derive(Debug)]
 pub(super) struct Onward<const L: usize> {
-    depths: Vec<(Columns<1>, [f64; L])>,
+    depths: Depths<L>,
     /// alpha and beta of each species.
     kernels: Vec<[[f64; L]; 2]>,
     /// alpha where nothing but the peak counts as not scattered: 5/(24 pi) h_2.
@@ -36,14 +36,17 @@ pub(super) struct Onward<const L: usize> {
 }
 
 /// A line through it.
-pub(super) struct Ahead<'a, const L: usize> {
-    depths: [Option<(Chord<'a, 1>, &'a [f64; L])>; MOST_SPECIES],
-}
+pub(super) struct Ahead<'a, const L: usize>(Along<'a, L>);
 
 impl<const L: usize> Onward<L> {
+    /// Of no species.
+    pub(super) fn none() -> Self {
+        Self { depths: Depths::none(), kernels: Vec::new(), full: Vec::new() }
+    }
+
     /// Of the species of a medium from which peaks were cut: those go on already.
     pub(super) fn new(species: &[Species<L>], medium: &Medium<L>, shape: Shape) -> Result<Self, MediumError> {
-        let mut all = Self::default();
+        let (mut all, mut scattered) = (Self::none(), Vec::new());
         for one in species {
             if one.is_molecular() {
                 all.kernels.push([one.coefficients[2]; 2]);
@@ -61,9 +64,10 @@ impl<const L: usize> Onward<L> {
                 std::array::from_fn(|j| -0.625 * natural[j] * one.whole[j]),
             ]);
             if on.iter().any(|&share| share > LEAST) {
-                all.depths.push(depths(one, (medium, shape), std::array::from_fn(|j| on[j] * one.scattering[j]))?);
+                scattered.push((one, std::array::from_fn(|j| on[j] * one.scattering[j])));
             }
         }
+        all.depths = Depths::new(&scattered, medium, shape)?;
         Ok(all)
     }
 
@@ -83,11 +87,7 @@ impl<const L: usize> Onward<L> {
 
     #[inline(always)]
     pub(super) fn along(&self, from: Place, direction: DVec3) -> Ahead<'_, L> {
-        let mut ahead = Ahead { depths: [const { None }; MOST_SPECIES] };
-        for (depth, (columns, shares)) in ahead.depths.iter_mut().zip(&self.depths) {
-            *depth = columns.chord(from, direction).map(|chord| (chord, shares));
-        }
-        ahead
+        Ahead(self.depths.along(from, direction))
     }
 }
 
@@ -95,12 +95,10 @@ impl<const L: usize> Ahead<'_, L> {
     /// What of Q and U arrives from a point of the line, over what of radiance does.
     #[inline(always)]
     pub(super) fn more(&self, s: f64) -> [f64; L] {
-        let mut depth = [0.0; L];
-        for (chord, shares) in self.depths.iter().flatten() {
-            let [before] = chord.point(s).depth;
-            for j in 0..L {
-                depth[j] -= before * shares[j];
-            }
+        // It is more by what counts as not scattered: exp(+depth).
+        let mut depth = self.0.before(s);
+        for one in &mut depth {
+            *one = -*one;
         }
         exp_minus(depth)
     }

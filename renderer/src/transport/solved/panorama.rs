@@ -7,8 +7,9 @@
 //! functions are those of the direction itself.
 //!
 //! How many looks that takes is found out. Of a part between two edges nine rings are looked at, and those between them; where the nine
-//! do not give the radiance of the others to the asked error, each half is such a part, at half as many azimuths if these show the others.
-//! Where halves do not end, every direction is looked at by itself.
+//! do not give the radiance of the others to eight times the asked error, which all of them then give to it, each half is such a part, at
+//! half as many azimuths if these show the others. Where halves do not end, or have fewer pixels than it would take looks, every direction
+//! is looked at by itself.
 
 use super::line::MOST_SPECIES;
 use super::sight::Around;
@@ -28,6 +29,9 @@ const AZIMUTHS: (usize, usize) = (4, 64);
 /// Intervals between rings of a part, before those between them are added.
 const RINGS: usize = 8;
 
+/// By how much a polynomial's error falls where nodes lie twice as close: 2^6 where all is smooth, 2^3 where the third derivative is not.
+const HALVED: f64 = 8.0;
+
 /// Parts that lie between two edges, and how often each may be halved.
 const PARTS: usize = 2;
 const HALVES: u32 = 6;
@@ -45,7 +49,16 @@ const MOST_EDGES: usize = 24;
 /// its own rms is far less.
 #[must_use]
 pub fn befitting(stated: f64) -> f64 {
-    stated.clamp(2e-4, 5e-3)
+    stated.clamp(5e-4, 5e-3)
+}
+
+/// Directions in which a panorama will be looked at.
+#[derive(Debug, Clone, Copy)]
+pub struct Pixels<'a> {
+    /// Some of them, unit vectors.
+    pub directions: &'a [DVec3],
+    /// For how many each of these stands.
+    pub each: usize,
 }
 
 /// Radiance in all directions at a place with a sun.
@@ -93,27 +106,23 @@ impl<const L: usize> Panorama<L> {
     }
 
     /// For an observer at `from` with the sun, a parallel beam, in the unit direction `sun`, off by about the share `error` of radiance at
-    /// most; of the parts in which some of the directions `wanted` lie. In others it looks.
+    /// most. Where few of the `pixels` lie, they are looked at themselves.
     #[must_use]
-    pub fn new(solved: &Solved<L>, from: Place, sun: DVec3, error: f64, wanted: &[DVec3]) -> Self {
+    pub fn new(solved: &Solved<L>, from: Place, sun: DVec3, error: f64, pixels: Pixels<'_>) -> Self {
         let level = sun - from.up * sun.dot(from.up);
         let ahead = level.try_normalize().unwrap_or_else(|| from.up.any_orthonormal_vector());
         let mut all = Self { from, sun, ahead, parts: Vec::new() };
-        let survey = Survey { all: &all, solved, error };
+        let mut zeniths: Vec<_> = pixels.directions.iter().map(|direction| all.zenith(*direction)).collect();
+        zeniths.sort_unstable_by(f64::total_cmp);
+        let survey = Survey { all: &all, solved, error, zeniths, each: pixels.each };
         let edges = edges(solved, from);
         let parts = edges.windows(2).flat_map(|ends| (0..PARTS).map(|k| (Between(ends[0], ends[1]), k)));
         let parts: Vec<_> = parts.collect();
-        let zeniths: Vec<_> = wanted.iter().map(|direction| all.zenith(*direction)).collect();
         let parts = parts.into_par_iter().flat_map_iter(|(between, k)| {
-            let ends = (k as f64 / PARTS as f64, (k + 1) as f64 / PARTS as f64);
-            let (low, high) = (between.at(ends.0) - OFF, between.at(ends.1) + OFF);
-            if zeniths.iter().any(|zenith| low <= *zenith && *zenith <= high) {
-                survey.part(between, ends, HALVES)
-            } else {
-                vec![Part::new(between, ends, None)]
-            }
+            survey.part(between, (k as f64 / PARTS as f64, (k + 1) as f64 / PARTS as f64), HALVES)
         });
-        all.parts = parts.collect();
+        let parts = parts.collect();
+        all.parts = parts;
         all
     }
 
@@ -201,9 +210,21 @@ struct Survey<'a, const L: usize> {
     all: &'a Panorama<L>,
     solved: &'a Solved<L>,
     error: f64,
+    /// Zenith angles of some pixels, from small to large, and for how many each stands.
+    zeniths: Vec<f64>,
+    each: usize,
 }
 
 impl<const L: usize> Survey<'_, L> {
+    /// How many pixels lie in a part.
+    fn pixels(&self, between: Between, ends: (f64, f64)) -> usize {
+        let (low, high) = (between.at(ends.0) - OFF, between.at(ends.1) + OFF);
+        let below = |angle: f64, itself: bool| {
+            self.zeniths.partition_point(|zenith| *zenith < angle || (itself && *zenith == angle))
+        };
+        self.each * (below(high, true) - below(low, false))
+    }
+
     /// Looks from one azimuth to its opposite, at every node or between those of half as many.
     fn ring(&self, zenith: f64, azimuths: usize, only_odd: bool) -> Vec<Looked<L>> {
         let Panorama { from, sun, .. } = *self.all;
@@ -216,9 +237,11 @@ impl<const L: usize> Survey<'_, L> {
 
     /// A part, or its halves, which may be halved so often.
     fn part(&self, between: Between, ends: (f64, f64), halves: u32) -> Vec<Part<L>> {
+        if self.pixels(between, ends) <= (2 * RINGS + 1) * (AZIMUTHS.0 + 1) {
+            return vec![Part::new(between, ends, None)];
+        }
         let at = |share: f64| between.at(ends.0 + (ends.1 - ends.0) * share);
-        let tried: Option<Vec<_>> = [0.05, 0.5, 0.95].iter().map(|share| self.azimuths(at(*share))).collect();
-        let Some(azimuths) = tried.and_then(|tried| tried.into_iter().max()) else {
+        let Some(tried) = self.tried(at) else {
             if halves == 0 {
                 return vec![Part::new(between, ends, None)];
             }
@@ -228,25 +251,42 @@ impl<const L: usize> Survey<'_, L> {
                 || self.part(between, (middle, ends.1), halves - 1),
             );
         };
-        let ring = |i: usize| self.ring(at(i as f64 / RINGS as f64), azimuths, false);
-        let rings = (0..=RINGS).into_par_iter().map(ring).collect();
-        self.halves(between, ends, azimuths, rings, halves)
+        let azimuths = tried.last().map_or(AZIMUTHS.0, |(_, ring)| ring.len() - 1);
+        let known = |i: usize| {
+            tried.iter().find(|(k, ring)| *k == i && ring.len() == azimuths + 1).map(|(_, ring)| ring.clone())
+        };
+        let look = |i: usize| known(i).unwrap_or_else(|| self.ring(at(i as f64 / (2 * RINGS) as f64), azimuths, false));
+        let all: Vec<_> = (0..=2 * RINGS).into_par_iter().map(look).collect();
+        let (rings, new) = apart(all);
+        self.halves(between, ends, rings, new, halves)
     }
 
+    /// Some of the rings of a part, which are numbered with those between them, with as many azimuths as all of these need, at least so
+    /// the last.
+    fn tried(&self, at: impl Fn(f64) -> f64) -> Option<Vec<(usize, Vec<Looked<L>>)>> {
+        let (mut tried, mut azimuths) = (Vec::with_capacity(3), AZIMUTHS.0);
+        for ring in [RINGS, 1, 2 * RINGS - 1] {
+            let looked = self.enough(at(ring as f64 / (2 * RINGS) as f64), azimuths)?;
+            azimuths = looked.len() - 1;
+            tried.push((ring, looked));
+        }
+        Some(tried)
+    }
+
+    /// A part of which rings, and those between them, are known.
     fn halves(
         &self,
         between: Between,
         ends: (f64, f64),
-        azimuths: usize,
         rings: Vec<Vec<Looked<L>>>,
+        new: Vec<Vec<Looked<L>>>,
         halves: u32,
     ) -> Vec<Part<L>> {
+        let azimuths = rings[0].len() - 1;
         let nodes = self.nodes(azimuths, &rings);
         let share = |i: usize| (2 * i + 1) as f64 / (2 * RINGS) as f64;
-        let look = |i| self.ring(between.at(ends.0 + (ends.1 - ends.0) * share(i)), azimuths, false);
-        let new: Vec<_> = (0..RINGS).into_par_iter().map(look).collect();
         let good = new.iter().enumerate().all(|(i, ring)| {
-            let shown = |(j, looked)| self.is_good(&nodes, [share(i), j as f64 / azimuths as f64], looked);
+            let shown = |(j, looked)| self.is_good(&nodes, [share(i), j as f64 / azimuths as f64], looked, HALVED);
             ring.iter().enumerate().all(shown)
         });
         let mut all = interleaved(rings, new);
@@ -258,41 +298,47 @@ impl<const L: usize> Survey<'_, L> {
         all.push(second[0].clone());
         let middle = 0.5 * (ends.0 + ends.1);
         let half = |ends: (f64, f64), rings: Vec<Vec<Looked<L>>>| {
-            let (azimuths, rings) = self.thinned(azimuths, rings);
-            self.halves(between, ends, azimuths, rings, halves - 1)
+            let rings = self.thinned(rings);
+            let azimuths = rings[0].len() - 1;
+            if self.pixels(between, ends) <= RINGS * (azimuths + 1) {
+                return vec![Part::new(between, ends, None)];
+            }
+            let look = |i| self.ring(between.at(ends.0 + (ends.1 - ends.0) * share(i)), azimuths, false);
+            let new = (0..RINGS).into_par_iter().map(look).collect();
+            self.halves(between, ends, rings, new, halves - 1)
         };
         both(|| half((ends.0, middle), all), || half((middle, ends.1), second))
     }
 
     /// Rings without every other azimuth as often as those that are left show the others.
-    fn thinned(&self, azimuths: usize, rings: Vec<Vec<Looked<L>>>) -> (usize, Vec<Vec<Looked<L>>>) {
-        let (mut azimuths, mut rings) = (azimuths, rings);
+    fn thinned(&self, rings: Vec<Vec<Looked<L>>>) -> Vec<Vec<Looked<L>>> {
+        let (mut azimuths, mut rings) = (rings[0].len() - 1, rings);
         while azimuths > AZIMUTHS.0 {
             let half = azimuths / 2;
             let turn = |j: usize| (2 * j + 1) as f64 / azimuths as f64;
             let few: Vec<Vec<_>> = rings.iter().map(|ring| ring.iter().copied().step_by(2).collect()).collect();
             let are_shown = |(few, ring): (&Vec<Looked<L>>, &Vec<Looked<L>>)| {
                 let nodes = self.nodes(half, std::slice::from_ref(few));
-                (0..half).all(|j| self.is_good(&nodes, [0.0, turn(j)], &ring[2 * j + 1]))
+                (0..half).all(|j| self.is_good(&nodes, [0.0, turn(j)], &ring[2 * j + 1], 1.0))
             };
             if !few.iter().zip(&rings).all(are_shown) {
                 break;
             }
             (azimuths, rings) = (half, few);
         }
-        (azimuths, rings)
+        rings
     }
 
-    /// How many intervals of azimuth a ring needs.
-    fn azimuths(&self, zenith: f64) -> Option<usize> {
-        let mut azimuths = AZIMUTHS.0;
+    /// A ring with as many azimuths as it needs, and at least so many intervals between them.
+    fn enough(&self, zenith: f64, least: usize) -> Option<Vec<Looked<L>>> {
+        let mut azimuths = least;
         let mut ring = self.ring(zenith, azimuths, false);
         while azimuths <= AZIMUTHS.1 {
             let nodes = self.nodes(azimuths, std::slice::from_ref(&ring));
             let new = self.ring(zenith, 2 * azimuths, true);
             let turn = |j: usize| (2 * j + 1) as f64 / (2 * azimuths) as f64;
-            if new.iter().enumerate().all(|(j, looked)| self.is_good(&nodes, [0.0, turn(j)], looked)) {
-                return Some(azimuths);
+            if new.iter().enumerate().all(|(j, looked)| self.is_good(&nodes, [0.0, turn(j)], looked, 1.0)) {
+                return Some(ring);
             }
             (ring, azimuths) = (interleaved(ring, new), 2 * azimuths);
         }
@@ -317,12 +363,12 @@ impl<const L: usize> Survey<'_, L> {
         Nodes { rings: rings.len() - 1, azimuths, values, rows, species }
     }
 
-    /// Whether nodes show what is seen.
-    fn is_good(&self, nodes: &Nodes<L>, at: [f64; 2], (direction, seen): &Looked<L>) -> bool {
+    /// Whether nodes show what is seen, to so many times the asked error.
+    fn is_good(&self, nodes: &Nodes<L>, at: [f64; 2], (direction, seen): &Looked<L>, times: f64) -> bool {
         let towards = direction.dot(self.all.sun);
         let found = vectorised::<L, _>(Glance { solved: self.solved, nodes, at, towards });
         let right = self.solved.shade(seen, towards, false);
-        let near = |found: &f64, seen: f64, radiance: f64| (found - seen).abs() <= self.error * radiance.abs();
+        let near = |found: &f64, seen: f64, radiance: f64| (found - seen).abs() <= times * self.error * radiance.abs();
         let good = found.iter().zip(right).all(|(found, right)| near(found, right, right));
         if !good || !self.solved.is_polarised() {
             return good;
@@ -341,6 +387,15 @@ fn both<const L: usize>(
     let (mut parts, more) = rayon::join(first, second);
     parts.extend(more);
     parts
+}
+
+/// Every other one, and those between them.
+fn apart<T>(all: Vec<T>) -> (Vec<T>, Vec<T>) {
+    let (mut even, mut odd) = (Vec::with_capacity(all.len() / 2 + 1), Vec::with_capacity(all.len() / 2));
+    for (i, one) in all.into_iter().enumerate() {
+        if i % 2 == 0 { even.push(one) } else { odd.push(one) }
+    }
+    (even, odd)
 }
 
 /// The old ones with a new one between each two.

@@ -1,7 +1,7 @@
 //! A line of sight. What does not depend on the sun is found once for all that have the same zenith angle: where the line crosses the levels, the
 //! weights of the table's sources there, and the points at which sunlight is summed while the sun is high.
 
-use super::aureole::Through;
+use super::depths::Along;
 use super::line::{Crossing, Rule, Spread, Stencil, Take, crossings, quadrature};
 use super::onward::{Ahead, Dipoles};
 use super::view::Seen;
@@ -22,7 +22,7 @@ pub(super) struct Sight<'a, const L: usize> {
     chord: Chord<'a, L>,
     /// It passes through the air in front of space.
     passes: bool,
-    through: Option<Through<'a, L>>,
+    peaks: Option<Along<'a, L>>,
     ahead: Option<Ahead<'a, L>>,
     /// Intervals between crossings, on one side of the perigee each, up to where nothing more arrives, and which points are theirs.
     intervals: Vec<((f64, f64), Range<usize>)>,
@@ -42,6 +42,8 @@ struct Points<const L: usize> {
     at: Vec<f64>,
     /// Of each point what each species scatters.
     scattered: Vec<[f64; L]>,
+    /// Depths of peaks up to it.
+    peaks: Vec<[f64; L]>,
 }
 
 impl<const L: usize> Take<L> for Points<L> {
@@ -71,7 +73,7 @@ impl<'a, const L: usize> Sight<'a, L> {
             single,
             chord,
             passes: chord.perigee() > 0.0 && begin < 0.0,
-            through: if single { None } else { optics.aureole.along(from, direction) },
+            peaks: if single { None } else { optics.aureole.along(from, direction) },
             ahead: polarised.then(|| optics.onward.along(from, direction)),
             intervals: Vec::with_capacity(places.len()),
             points: Points::default(),
@@ -103,6 +105,12 @@ impl<'a, const L: usize> Sight<'a, L> {
                 }
                 all.intervals.push(((a, b), first..all.points.at.len()));
                 a = b;
+            }
+        }
+        if let Some(peaks) = &all.peaks {
+            all.points.peaks.reserve(all.points.at.len());
+            for s in &all.points.at {
+                all.points.peaks.push(peaks.before(*s));
             }
         }
         if !single {
@@ -147,9 +155,9 @@ impl<'a, const L: usize> Sight<'a, L> {
             let (mut a, end) = (*from, *to);
             if lit.is_high(a, end) {
                 let count = optics.species.len();
-                let rows = self.points.scattered[points.start * count..points.end * count].chunks_exact(count);
-                for (s, scattered) in self.points.at[points.clone()].iter().zip(rows) {
-                    taker.take(*s, scattered);
+                for i in points.clone() {
+                    let scattered = &self.points.scattered[i * count..(i + 1) * count];
+                    taker.take_behind(self.points.at[i], scattered, self.points.peaks.get(i));
                 }
                 continue;
             }
@@ -230,12 +238,25 @@ struct Taker<'a, const L: usize> {
 impl<const L: usize> Take<L> for Taker<'_, L> {
     #[inline(always)]
     fn take(&mut self, s: f64, scattered: &[[f64; L]]) {
+        let before = self.lit.sight.peaks.as_ref().map(|peaks| peaks.before(s));
+        self.take_behind(s, scattered, before.as_ref());
+    }
+}
+
+impl<const L: usize> Taker<'_, L> {
+    /// Takes what is scattered at a point behind that depth of peaks.
+    #[inline(always)]
+    fn take_behind(&mut self, s: f64, scattered: &[[f64; L]], before: Option<&[f64; L]>) {
         let Lit { sight, direction, sun, sunlight } = *self.lit;
         let at = sight.chord.place(sight.from, direction, s);
         let Some(sunlight) = sunlight.transmittance(at, sun) else {
             return;
         };
-        let depth = sight.through.as_ref().map(|through| through.depth(s, at, sun));
+        let mut depth = [0.0; L];
+        if let (Some(peaks), Some(before)) = (&sight.peaks, before) {
+            depth = peaks.after(at, sun);
+            add(&mut depth, before, &[1.0; L]);
+        }
         let more = sight.ahead.as_ref().map(|ahead| ahead.more(s));
         let once = self.seen.once.iter_mut().zip(&mut self.seen.turned);
         for (((once, turned), scattered), one) in once.zip(scattered).zip(&sight.solved.optics.species) {
@@ -244,10 +265,8 @@ impl<const L: usize> Take<L> for Taker<'_, L> {
             if let Some(more) = &more {
                 add(turned, &arrives, more);
             }
-            if let Some(depth) = &depth
-                && !one.is_molecular()
-            {
-                add(&mut self.seen.peaks, &arrives, depth);
+            if before.is_some() && !one.is_molecular() {
+                add(&mut self.seen.peaks, &arrives, &depth);
             }
         }
     }

@@ -424,7 +424,7 @@ fn a_panorama_shows_what_looks_see() {
     let all: Vec<_> = (0..600).map(|i| spiral(i, 600, [-1.0, 1.0])).collect();
     for (altitude, sun_zenith) in [(0.0, 50.0), (0.5, 50.0), (2.0, 93.0), (9e3, 75.0), (4e5, 60.0)] {
         let (from, sun) = (Place::above(altitude), towards(sun_zenith, 30.0));
-        let seen = Panorama::new(&solved, from, sun, 5e-4, &all);
+        let seen = Panorama::new(&solved, from, sun, 5e-4, Pixels { directions: &all, each: 1000 });
         let (mut worst, mut sum, mut count) = (0.0_f64, 0.0, 0.0);
         for &direction in &all {
             let right = solved.radiance(from, direction, sun, false);

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::sampling::spiral;
-use crate::transport::solved::{Panorama, Resolution, Solved};
+use crate::transport::solved::{Panorama, Pixels, Resolution, Solved};
 
 /// As fine as tests need.
 const TEST: Resolution = Resolution { levels: 18, suns: 36, zeniths: [6, 4, 5], parts: 4, degree: 12, change: 2e-4 };
@@ -151,7 +151,7 @@ fn a_panorama_shows_stokes_parameters() {
     all.push(DVec3::Z);
     for (altitude, sun_zenith) in [(2.0, 50.0), (2.0, 92.0), (4e5, 60.0)] {
         let (from, sun) = (Place::above(altitude), towards(sun_zenith, 30.0));
-        let seen = Panorama::new(&solved, from, sun, 5e-4, &all);
+        let seen = Panorama::new(&solved, from, sun, 5e-4, Pixels { directions: &all, each: 1000 });
         let mut polarised = 0.0_f64;
         for &direction in &all {
             let frame = Frame::new(direction, direction.any_orthonormal_vector());
