@@ -28,6 +28,7 @@ mod harmonics;
 mod line;
 mod linear;
 mod mix;
+mod nodes;
 mod onward;
 mod orders;
 mod panorama;

@@ -11,7 +11,7 @@
 //! half as many azimuths if these show the others. Where halves do not end, or have fewer pixels than it would take looks, every direction
 //! is looked at by itself.
 
-use super::line::MOST_SPECIES;
+use super::nodes::{Glance, Interpolation, Nodes};
 use super::sight::Around;
 use super::view::Seen;
 use super::{Optics, Solved};
@@ -19,7 +19,6 @@ use crate::geometry::Place;
 use crate::polarisation::{Frame, Stokes};
 use crate::vectors::vectorised;
 use glam::DVec3;
-use pulp::NullaryFnOnce;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -35,9 +34,6 @@ const HALVED: f64 = 8.0;
 /// Parts that lie between two edges, and how often each may be halved.
 const PARTS: usize = 2;
 const HALVES: u32 = 6;
-
-/// Nodes of a polynomial.
-const NODES: usize = 6;
 
 /// Rings stay off edges by this many radians.
 const OFF: f64 = 1e-6;
@@ -86,17 +82,6 @@ struct Part<const L: usize> {
 /// Zenith angles between two edges.
 #[derive(Debug, Clone, Copy)]
 struct Between(f64, f64);
-
-/// Looks at the nodes of a part.
-#[derive(Debug)]
-struct Nodes<const L: usize> {
-    rings: usize,
-    azimuths: usize,
-    /// [ring][azimuth][`rows`]: what is seen.
-    values: Vec<[f32; L]>,
-    rows: usize,
-    species: usize,
-}
 
 impl<const L: usize> Panorama<L> {
     /// Unit vector to the sun.
@@ -283,7 +268,7 @@ impl<const L: usize> Survey<'_, L> {
         halves: u32,
     ) -> Vec<Part<L>> {
         let azimuths = rings[0].len() - 1;
-        let nodes = self.nodes(azimuths, &rings);
+        let nodes = self.nodes(&rings);
         let share = |i: usize| (2 * i + 1) as f64 / (2 * RINGS) as f64;
         let good = new.iter().enumerate().all(|(i, ring)| {
             let shown = |(j, looked)| self.is_good(&nodes, [share(i), j as f64 / azimuths as f64], looked, HALVED);
@@ -291,7 +276,7 @@ impl<const L: usize> Survey<'_, L> {
         });
         let mut all = interleaved(rings, new);
         if good || halves == 0 {
-            let nodes = good.then(|| self.nodes(azimuths, &all));
+            let nodes = good.then(|| self.nodes(&all));
             return vec![Part::new(between, ends, nodes)];
         }
         let second = all.split_off(RINGS);
@@ -318,7 +303,7 @@ impl<const L: usize> Survey<'_, L> {
             let turn = |j: usize| (2 * j + 1) as f64 / azimuths as f64;
             let few: Vec<Vec<_>> = rings.iter().map(|ring| ring.iter().copied().step_by(2).collect()).collect();
             let are_shown = |(few, ring): (&Vec<Looked<L>>, &Vec<Looked<L>>)| {
-                let nodes = self.nodes(half, std::slice::from_ref(few));
+                let nodes = self.nodes(std::slice::from_ref(few));
                 (0..half).all(|j| self.is_good(&nodes, [0.0, turn(j)], &ring[2 * j + 1], 1.0))
             };
             if !few.iter().zip(&rings).all(are_shown) {
@@ -334,7 +319,7 @@ impl<const L: usize> Survey<'_, L> {
         let mut azimuths = least;
         let mut ring = self.ring(zenith, azimuths, false);
         while azimuths <= AZIMUTHS.1 {
-            let nodes = self.nodes(azimuths, std::slice::from_ref(&ring));
+            let nodes = self.nodes(std::slice::from_ref(&ring));
             let new = self.ring(zenith, 2 * azimuths, true);
             let turn = |j: usize| (2 * j + 1) as f64 / (2 * azimuths) as f64;
             if new.iter().enumerate().all(|(j, looked)| self.is_good(&nodes, [0.0, turn(j)], looked, 1.0)) {
@@ -345,22 +330,8 @@ impl<const L: usize> Survey<'_, L> {
         None
     }
 
-    fn nodes(&self, azimuths: usize, rings: &[Vec<Looked<L>>]) -> Nodes<L> {
-        let species = self.solved.optics.species.len();
-        let polarised = self.solved.is_polarised();
-        let rows = if polarised { 4 + 2 * species } else { 2 + species };
-        let single = |row: &[f64; L]| row.map(|value| value as f32);
-        let of = |(_, seen): &Looked<L>| {
-            let mut values = vec![single(&seen.rest), single(&seen.peaks)];
-            values.extend(seen.once[..species].iter().map(single));
-            if polarised {
-                values.extend(seen.turned[..species].iter().map(single));
-                values.extend(seen.linear.iter().map(single));
-            }
-            values
-        };
-        let values = rings.iter().flatten().flat_map(of).collect();
-        Nodes { rings: rings.len() - 1, azimuths, values, rows, species }
+    fn nodes(&self, rings: &[Vec<Looked<L>>]) -> Nodes<L> {
+        Nodes::new(rings.iter().map(|ring| ring.iter().map(|(_, seen)| seen)), self.solved)
     }
 
     /// Whether nodes show what is seen, to so many times the asked error.
@@ -425,112 +396,4 @@ fn edges<const L: usize>(solved: &Solved<L>, from: Place) -> Vec<f64> {
     edges.sort_by(f64::total_cmp);
     edges.dedup_by(|b, a| *b - *a < 4.0 * OFF);
     edges
-}
-
-/// Weights of Lagrange's polynomial through nodes at 0, 1 and so on.
-#[inline(always)]
-fn weights(x: f64) -> [f64; NODES] {
-    const DIVISORS: [f64; NODES] = [-120.0, 24.0, -12.0, 12.0, -24.0, 120.0];
-    let [a, b, c, d, e, f] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(|node| x - node);
-    let (ab, cd, ef) = (a * b, c * d, e * f);
-    let products = [b * cd * ef, a * cd * ef, ab * d * ef, ab * c * ef, ab * cd * f, ab * cd * e];
-    std::array::from_fn(|k| products[k] / DIVISORS[k])
-}
-
-/// The nodes around a place at a share of so many intervals, and their weights: of one ring itself.
-#[inline(always)]
-fn inside(intervals: usize, share: f64) -> [(usize, f64); NODES] {
-    if intervals == 0 {
-        let mut one = [(0, 0.0); NODES];
-        one[0].1 = 1.0;
-        return one;
-    }
-    let place = share * intervals as f64;
-    let first = (place as usize).saturating_sub(NODES / 2 - 1).min(intervals + 1 - NODES);
-    let weights = weights(place - first as f64);
-    std::array::from_fn(|k| (first + k, weights[k]))
-}
-
-/// As [`inside`], where all goes on mirrored at both ends, also of what changes sign there.
-#[inline(always)]
-fn mirrored(intervals: usize, share: f64) -> [(usize, f64, f64); NODES] {
-    let place = share * intervals as f64;
-    let first = place.floor() as i64 - (NODES as i64 / 2 - 1);
-    let weights = weights(place - first as f64);
-    let last = intervals as i64;
-    std::array::from_fn(|k| {
-        let at = (first + k as i64).abs();
-        let odd = if first + k as i64 != at || at > last { -weights[k] } else { weights[k] };
-        ((if at > last { 2 * last - at } else { at }) as usize, weights[k], odd)
-    })
-}
-
-/// What nodes say of a direction.
-struct Glance<'a, const L: usize> {
-    solved: &'a Solved<L>,
-    nodes: &'a Nodes<L>,
-    at: [f64; 2],
-    towards: f64,
-}
-
-impl<const L: usize> NullaryFnOnce for Glance<'_, L> {
-    type Output = [f64; L];
-
-    #[inline(always)]
-    fn call(self) -> [f64; L] {
-        self.solved.shade(&self.nodes.seen(self.at), self.towards, false)
-    }
-}
-
-/// What nodes say of a direction, before the phase functions.
-struct Interpolation<'a, const L: usize>(&'a Nodes<L>, [f64; 2]);
-
-impl<const L: usize> NullaryFnOnce for Interpolation<'_, L> {
-    type Output = Seen<L>;
-
-    #[inline(always)]
-    fn call(self) -> Seen<L> {
-        self.0.seen(self.1)
-    }
-}
-
-impl<const L: usize> Nodes<L> {
-    #[inline(always)]
-    fn seen(&self, [ring, azimuth]: [f64; 2]) -> Seen<L> {
-        let (along, across) = (inside(self.rings, ring), mirrored(self.azimuths, azimuth));
-        let (mut places, mut even, mut odd) = ([0; NODES * NODES], [0.0; NODES * NODES], [0.0; NODES * NODES]);
-        for i in 0..NODES {
-            for k in 0..NODES {
-                let ((ring, a), (azimuth, b, c)) = (along[i], across[k]);
-                places[i * NODES + k] = (ring * (self.azimuths + 1) + azimuth) * self.rows;
-                even[i * NODES + k] = (a * b) as f32;
-                odd[i * NODES + k] = (a * c) as f32;
-            }
-        }
-        let mut values = [[0.0_f32; L]; 2 * MOST_SPECIES + 4];
-        let last = 3 + 2 * self.species;
-        for (row, value) in values.iter_mut().enumerate().take(self.rows) {
-            // The last row is U.
-            let weights = if row == last { &odd } else { &even };
-            // Two sums, so that neither waits for itself.
-            let (mut first, mut second) = ([0.0_f32; L], [0.0_f32; L]);
-            for k in 0..NODES * NODES / 2 {
-                let (a, b) = (&self.values[places[2 * k] + row], &self.values[places[2 * k + 1] + row]);
-                for j in 0..L {
-                    first[j] += weights[2 * k] * a[j];
-                }
-                for j in 0..L {
-                    second[j] += weights[2 * k + 1] * b[j];
-                }
-            }
-            for j in 0..L {
-                value[j] = first[j] + second[j];
-            }
-        }
-        let [rest, peaks, others @ ..] = values.map(|row| row.map(f64::from));
-        let (mut once, mut turned) = ([[0.0; L]; MOST_SPECIES], [[0.0; L]; MOST_SPECIES]);
-        once[..self.species].copy_from_slice(&others[..self.species]);
-        turned[..self.species].copy_from_slice(&others[self.species..2 * self.species]);
-        Seen { rest, peaks, once, turned, linear: [others[2 * self.species], others[2 * self.species + 1]] }
-    }
 }

@@ -11,8 +11,21 @@ use crate::geometry::Place;
 use crate::vectors::exp_minus;
 use glam::DVec3;
 use pulp::NullaryFnOnce;
+use std::cell::RefCell;
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
+
+impl<const L: usize> Points<L> {
+    /// Finds the depths of peaks up to the points that are new.
+    #[inline(always)]
+    fn reach(&mut self, peaks: &Option<Along<'_, L>>) {
+        if let Some(peaks) = peaks {
+            for i in self.peaks.len()..self.at.len() {
+                self.peaks.push(peaks.before(self.at[i]));
+            }
+        }
+    }
+}
 
 /// A line of sight before it has an azimuth.
 pub(super) struct Sight<'a, const L: usize> {
@@ -24,9 +37,10 @@ pub(super) struct Sight<'a, const L: usize> {
     passes: bool,
     peaks: Option<Along<'a, L>>,
     ahead: Option<Ahead<'a, L>>,
-    /// Intervals between crossings, on one side of the perigee each, up to where nothing more arrives, and which points are theirs.
-    intervals: Vec<((f64, f64), Range<usize>)>,
-    points: Points<L>,
+    /// Intervals between crossings, on one side of the perigee each, up to where nothing more arrives.
+    intervals: Vec<(f64, f64)>,
+    /// Points of each interval, for every rule by which one was integrated.
+    kept: RefCell<Kept<L>>,
     /// Where it crosses levels, what counts there, and what is scattered there of each degree: harmonics and sources in turn.
     sources: Vec<(Crossing, Reach)>,
     harmonics: Vec<f64>,
@@ -35,7 +49,18 @@ pub(super) struct Sight<'a, const L: usize> {
     dipoles: Vec<(Crossing, [[f64; L]; 2])>,
 }
 
-/// Points of a line at which what is scattered is known.
+/// Points of a line, in the order in which they were first looked for.
+#[derive(Default)]
+struct Kept<const L: usize> {
+    /// Of each interval the rules, and which points are theirs; none where it is too dark.
+    rules: Vec<Vec<(Parts, Option<Range<usize>>)>>,
+    points: Points<L>,
+}
+
+/// Whether an interval is integrated finely, and the least number of parts.
+type Parts = (bool, f64);
+
+/// Points at which what is scattered is known.
 #[derive(Default)]
 struct Points<const L: usize> {
     /// Distances from the perigee.
@@ -76,7 +101,7 @@ impl<'a, const L: usize> Sight<'a, L> {
             peaks: if single { None } else { optics.aureole.along(from, direction) },
             ahead: polarised.then(|| optics.onward.along(from, direction)),
             intervals: Vec::with_capacity(places.len()),
-            points: Points::default(),
+            kept: RefCell::default(),
             sources: Vec::with_capacity(places.len()),
             harmonics: Vec::new(),
             scattered: Vec::new(),
@@ -91,7 +116,6 @@ impl<'a, const L: usize> Sight<'a, L> {
                 if b <= a {
                     continue;
                 }
-                let first = all.points.at.len();
                 let spread = (!single).then_some(Spread { polynomials, weights: &mut weights });
                 let linear = all.ahead.as_ref().map(|ahead| Dipoles {
                     to: Spread { polynomials, weights: &mut dipoles },
@@ -99,18 +123,16 @@ impl<'a, const L: usize> Sight<'a, L> {
                     ahead,
                 });
                 let rule = all.chord_rule(a, b);
-                let mut taker = ((&mut all.points, spread), linear);
+                let kept = all.kept.get_mut();
+                let first = kept.points.at.len();
+                let mut taker = ((&mut kept.points, spread), linear);
                 if !quadrature(&chord, optics, (a, b), rule, &mut taker) {
                     break 'line;
                 }
-                all.intervals.push(((a, b), first..all.points.at.len()));
+                kept.points.reach(&all.peaks);
+                kept.rules.push(vec![((rule.fine, rule.least), Some(first..kept.points.at.len()))]);
+                all.intervals.push((a, b));
                 a = b;
-            }
-        }
-        if let Some(peaks) = &all.peaks {
-            all.points.peaks.reserve(all.points.at.len());
-            for s in &all.points.at {
-                all.points.peaks.push(peaks.before(*s));
             }
         }
         if !single {
@@ -127,6 +149,23 @@ impl<'a, const L: usize> Sight<'a, L> {
             all.dipoles = places.iter().copied().zip(dipoles.as_chunks::<2>().0.iter().copied()).collect();
         }
         Some(all)
+    }
+
+    /// Which points an interval has by a rule; none if it is too dark there.
+    #[inline(always)]
+    fn points(&self, interval: usize, rule: Rule<'_>) -> Option<Range<usize>> {
+        let mut kept = self.kept.borrow_mut();
+        let Kept { rules, points } = &mut *kept;
+        let parts = (rule.fine, rule.least);
+        if let Some((_, range)) = rules[interval].iter().find(|(known, _)| *known == parts) {
+            return range.clone();
+        }
+        let first = points.at.len();
+        let lit = quadrature(&self.chord, &self.solved.optics, self.intervals[interval], rule, points);
+        points.reach(&self.peaks);
+        let range = lit.then_some(first..points.at.len());
+        rules[interval].push((parts, range.clone()));
+        range
     }
 
     /// How an interval is integrated with the sun high.
@@ -151,18 +190,20 @@ impl<'a, const L: usize> Sight<'a, L> {
         let lit = Lit { sight: self, direction, sun, sunlight };
         let cuts = lit.cuts();
         let mut taker = Taker { lit: &lit, seen: &mut seen };
-        'line: for ((from, to), points) in &self.intervals {
-            let (mut a, end) = (*from, *to);
-            if lit.is_high(a, end) {
-                let count = optics.species.len();
-                for i in points.clone() {
-                    let scattered = &self.points.scattered[i * count..(i + 1) * count];
-                    taker.take_behind(self.points.at[i], scattered, self.points.peaks.get(i));
+        'line: for (interval, &(from, to)) in self.intervals.iter().enumerate() {
+            if !cuts.iter().any(|cut| from < *cut && *cut < to) {
+                let rule = if lit.is_high(from, to) { self.chord_rule(from, to) } else { lit.rule(from, to) };
+                let Some(range) = self.points(interval, rule) else { break };
+                let (count, points) = (optics.species.len(), &self.kept.borrow().points);
+                for i in range {
+                    let scattered = &points.scattered[i * count..(i + 1) * count];
+                    taker.take_behind(points.at[i], scattered, points.peaks.get(i));
                 }
                 continue;
             }
-            for b in cuts.iter().copied().chain([end]) {
-                let b = b.min(end);
+            let mut a = from;
+            for b in cuts.iter().copied().chain([to]) {
+                let b = b.min(to);
                 if b > a {
                     if !quadrature(chord, optics, (a, b), lit.rule(a, b), &mut taker) {
                         break 'line;
