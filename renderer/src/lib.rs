@@ -16,6 +16,7 @@ pub mod gallery;
 pub mod geometry;
 pub mod ground;
 pub mod light;
+mod lookup;
 pub mod phase;
 pub mod plan;
 pub mod polarisation;

@@ -5,6 +5,7 @@
 //! samples and the weight of a sample is 1 for the wavelength it was drawn for.
 //! Other wavelengths carried by the same path are weighted by the ratio of values.
 
+use crate::lookup::Lookup;
 use crate::polarisation::{Natural, Scattering};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -35,6 +36,8 @@ pub enum Phase<const L: usize> {
 pub struct Tabulated<const L: usize> {
     /// Cosines of the scattering angle, increasing from -1 to 1.
     cosines: Vec<f64>,
+    /// 1 - c of the nodes, increasing: they lie closest at 0, in its root sin(angle / 2) about evenly.
+    forwards: Lookup,
     /// Values in sr^-1 at each node.
     values: Vec<[f64; L]>,
     /// 2 pi times the integral of the values from -1 to each node.
@@ -68,7 +71,8 @@ impl<const L: usize> Tabulated<L> {
         for j in 0..L {
             values.iter_mut().chain(&mut cumulative).for_each(|row| row[j] /= total[j]);
         }
-        Some(Self { cosines, values, cumulative, matrices: None })
+        let forwards = Lookup::new(cosines.iter().rev().map(|c| 1.0 - c).collect());
+        Some(Self { cosines, forwards, values, cumulative, matrices: None })
     }
 
     /// With the matrices of scattering at each node, over their a1. Between nodes every element is linear as the phase
@@ -93,17 +97,23 @@ impl<const L: usize> Tabulated<L> {
         &self.cosines
     }
 
-    /// Index of the node at or below `c`, at most the last but one, and the fraction to the next.
+    /// Index of a node about `c`, at most the last but one, and the fraction to the next.
+    #[inline(always)]
     fn locate(&self, c: f64) -> (usize, f64) {
-        let i = self.cosines.partition_point(|&x| x <= c).clamp(1, self.cosines.len() - 1) - 1;
+        let i = self.cosines.len() - 2 - self.forwards.cell(1.0 - c);
         let (a, b) = (self.cosines[i], self.cosines[i + 1]);
         (i, ((c - a) / (b - a)).clamp(0.0, 1.0))
     }
 
+    #[inline(always)]
     fn values(&self, c: f64) -> [f64; L] {
         let (i, f) = self.locate(c);
         let (a, b) = (&self.values[i], &self.values[i + 1]);
-        std::array::from_fn(|j| a[j] + f * (b[j] - a[j]))
+        let mut values = [0.0; L];
+        for j in 0..L {
+            values[j] = a[j] + f * (b[j] - a[j]);
+        }
+        values
     }
 
     /// Matrices of scattering; a phase function alone counts as depolarising.
@@ -151,6 +161,7 @@ pub struct PhaseSample {
 impl<const L: usize> Phase<L> {
     /// Value in sr^-1 at every wavelength for the cosine `c` of the scattering angle.
     #[must_use]
+    #[inline(always)]
     pub fn values(&self, c: f64) -> [f64; L] {
         match self {
             Self::Rayleigh { gamma } => gamma.map(|gamma| rayleigh(gamma, c)),

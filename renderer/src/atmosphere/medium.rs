@@ -1,7 +1,7 @@
 //! A layered medium at `L` wavelengths.
 
-use super::lookup::Lookup;
 use crate::geometry::{End, Place, Ray, Segment, Shape};
+use crate::lookup::Lookup;
 use crate::phase::Phase;
 use glam::DVec3;
 use tables::{Curve, Interpolation, Outside, Scale, TableError};

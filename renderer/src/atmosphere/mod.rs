@@ -8,7 +8,6 @@
 mod air;
 mod columns;
 mod haze;
-mod lookup;
 mod medium;
 
 pub use air::{Air, AirError, AirSettings, Depolarisation, Depths, OzoneSource};

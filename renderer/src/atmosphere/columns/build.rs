@@ -2,9 +2,9 @@
 
 use super::{Columns, Rows};
 use crate::atmosphere::Medium;
-use crate::atmosphere::lookup::Lookup;
 use crate::atmosphere::medium::GAUSS_4;
 use crate::geometry::Shape;
+use crate::lookup::Lookup;
 use crate::vectors::{exp_minus, vectorised};
 use pulp::NullaryFnOnce;
 use rayon::prelude::*;

@@ -24,8 +24,8 @@ mod tests;
 pub use build::Tolerance;
 pub use chord::{Chord, Point};
 
-use super::lookup::Lookup;
 use crate::geometry::Shape;
+use crate::lookup::Lookup;
 
 /// Columns of a medium at `L` wavelengths.
 #[derive(Debug, Clone)]

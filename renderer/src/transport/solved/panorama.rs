@@ -45,7 +45,7 @@ const MOST_EDGES: usize = 24;
 /// its own rms is far less.
 #[must_use]
 pub fn befitting(stated: f64) -> f64 {
-    stated.clamp(5e-4, 5e-3)
+    (2.0 * stated).clamp(5e-4, 4e-3)
 }
 
 /// Directions in which a panorama will be looked at.

@@ -327,12 +327,12 @@ fn add<const L: usize>(sum: &mut [f64; L], a: &[f64; L], b: &[f64; L]) {
 const LOW_SUN: f64 = 0.1;
 
 /// Change of the altitude at which sunlight passes the planet, in one part of a line, as a share of that of the top, and most parts for it.
-const PASSES: f64 = 0.02;
+const PASSES: f64 = 0.03;
 const MOST_PASSED: f64 = 8.0;
 
-/// Changes of its optical depth that Gauss' rules of two and of four nodes bear (1e-6 and 4e-6), most parts for them, and a
-/// transmittance that does not count.
-const COARSE_DEPTH: f64 = 0.25;
+/// Changes of its optical depth that Gauss' rules of two and of four nodes bear (3e-5 and 4e-6 of what there is), most parts for them, and
+/// a transmittance that does not count.
+const COARSE_DEPTH: f64 = 0.6;
 const FINE_DEPTH: f64 = 3.0;
 const MOST_GRAZED: f64 = 16.0;
 const DIM: f64 = 1e-9;
@@ -406,7 +406,7 @@ impl<const L: usize> Lit<'_, L> {
             (position - self.sun * position.dot(self.sun)).length()
         });
         // Sunlight that passes through a layer with bends changes faster.
-        let step = if bends.is_empty() { PASSES } else { 0.3 * PASSES };
+        let step = if bends.is_empty() { PASSES } else { 0.4 * PASSES };
         let passed = (at_a - at_b).abs() / (step * sight.solved.optics.medium.top_m());
         let grazed = self.grazed(ends);
         let parts = passed.ceil().min(MOST_PASSED).max((grazed / FINE_DEPTH).ceil().min(MOST_GRAZED));

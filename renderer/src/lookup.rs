@@ -3,7 +3,7 @@
 /// Increasing nodes, and the cell of a number among them without a search: buckets uniform in the root of
 /// the share of the whole range, since nodes lie closest at its beginning.
 #[derive(Debug, Clone)]
-pub(super) struct Lookup {
+pub(crate) struct Lookup {
     nodes: Vec<f64>,
     first: Vec<u32>,
     scale: f64,
@@ -11,8 +11,8 @@ pub(super) struct Lookup {
 
 impl Lookup {
     /// At least two increasing nodes.
-    pub(super) fn new(nodes: Vec<f64>) -> Self {
-        let buckets = 16 * nodes.len();
+    pub(crate) fn new(nodes: Vec<f64>) -> Self {
+        let buckets = 4 * nodes.len();
         let scale = 1.0 / (nodes[nodes.len() - 1] - nodes[0]);
         let mut first = vec![0; buckets + 1];
         let mut cell = 0_u32;
@@ -29,17 +29,17 @@ impl Lookup {
     }
 
     /// The nodes.
-    pub(super) fn nodes(&self) -> &[f64] {
+    pub(crate) fn nodes(&self) -> &[f64] {
         &self.nodes
     }
 
-    pub(super) fn last(&self) -> f64 {
+    pub(crate) fn last(&self) -> f64 {
         self.nodes[self.nodes.len() - 1]
     }
 
     /// The cell i with nodes[i] <= x < nodes[i + 1]; the first or the last cell for what lies outside.
     #[inline(always)]
-    pub(super) fn cell(&self, x: f64) -> usize {
+    pub(crate) fn cell(&self, x: f64) -> usize {
         let share = ((x - self.nodes[0]) * self.scale).clamp(0.0, 1.0);
         let bucket = (share.sqrt() * (self.first.len() - 1) as f64) as usize;
         let mut cell = self.first[bucket] as usize;
@@ -51,7 +51,7 @@ impl Lookup {
 
     /// The cell of `x` and the fraction of it below `x`, 0 to 1.
     #[inline(always)]
-    pub(super) fn locate(&self, x: f64) -> (usize, f64) {
+    pub(crate) fn locate(&self, x: f64) -> (usize, f64) {
         let cell = self.cell(x);
         let (a, b) = (self.nodes[cell], self.nodes[cell + 1]);
         (cell, ((x - a) / (b - a)).clamp(0.0, 1.0))
