@@ -1,11 +1,14 @@
 //! Where light comes from at a place: a density of directions and distances, from a solved table.
 
 use super::Solved;
+use super::line::MOST_SPECIES;
 use super::sources::Sources;
 use crate::atmosphere::Chord;
 use crate::geometry::Place;
 use crate::transport::radiation::Scalar;
+use crate::vectors::{exp_minus, vectorised};
 use glam::DVec3;
+use pulp::NullaryFnOnce;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -19,7 +22,10 @@ const AZIMUTHS: usize = 8;
 const DIRECTIONS: usize = ALL_ZENITHS * AZIMUTHS;
 
 /// Distances.
-pub(super) const DISTANCES: usize = 16;
+pub(super) const DISTANCES: usize = 32;
+
+/// Every which of them the diffuse light is looked up at, which changes little.
+const EACH: usize = 4;
 
 /// The share of all densities that is even.
 pub(super) const EVEN: f64 = 0.1;
@@ -186,7 +192,8 @@ impl Guide {
                 let (sin, cos) = (first_sun + SUN_STEP * (i / levels.len()) as f64).sin_cos();
                 // Not quite the top, from which nothing is seen upwards.
                 let altitude = levels[i % levels.len()].min(0.999 * levels[levels.len() - 1]);
-                entry(sources, Place::above(altitude), DVec3::new(sin, 0.0, cos), norm)
+                let (place, sun) = (Place::above(altitude), DVec3::new(sin, 0.0, cos));
+                vectorised::<L, _>(Survey { sources, place, sun, norm })
             })
             .collect();
         Self { first_sun, suns, entries }
@@ -205,36 +212,64 @@ impl Guide {
     }
 }
 
-fn entry<const L: usize>(sources: &Sources<'_, L>, place: Place, sun: DVec3, norm: &[f64; L]) -> Entry {
-    let frame = Frame::new(place, sun, sources.solved.grid.radius);
-    let mut harmonics = Vec::new();
-    let mut masses = [0.0; DIRECTIONS];
-    let counts = |light: &[f64; L]| -> f64 { (0..L).map(|j| light[j] / norm[j]).sum::<f64>().max(0.0) };
-    let distances = (0..DIRECTIONS).map(|bin| {
-        // The middle of the bin by its measure.
-        let (direction, width) = frame.direction(bin, [0.5, 0.25]);
-        let mut along = [0.0; DISTANCES];
-        let Some(chord) = sources.columns().chord(place, direction) else { return Bins::new(along) };
-        let way = Way::new(&chord, sources.solved.grid.radius);
-        for (i, mass) in along.iter_mut().enumerate() {
-            let (s, stretch) = way.at(&chord, (i as f64 + 0.5) / DISTANCES as f64);
-            let through = chord.point(s).depth.map(|depth| (-depth).exp());
-            let there = chord.place(place, direction, s);
-            let source = sources.air::<Scalar>(there, (direction, ()), sun, &mut harmonics);
-            let light = std::array::from_fn(|j| through[j] * source.total[j] * stretch);
-            *mass = counts(&light);
-        }
-        let mut mass = along.iter().sum::<f64>() / DISTANCES as f64;
-        if chord.ends_on_ground() {
-            let source = sources.ground::<Scalar>(chord.foot(place, direction), sun);
-            let total = chord.total();
-            mass += counts(&std::array::from_fn(|j| (-total[j]).exp() * source.total[j]));
-        }
-        masses[bin] = mass * width;
-        Bins::new(along)
-    });
-    let distances = distances.collect();
-    Entry { directions: Bins::new(masses), distances }
+/// What is seen from a place with a sun.
+struct Survey<'a, const L: usize> {
+    sources: &'a Sources<'a, L>,
+    place: Place,
+    sun: DVec3,
+    norm: &'a [f64; L],
+}
+
+impl<const L: usize> NullaryFnOnce for Survey<'_, L> {
+    type Output = Entry;
+
+    #[inline(always)]
+    fn call(self) -> Entry {
+        let Self { sources, place, sun, norm } = self;
+        let frame = Frame::new(place, sun, sources.solved.grid.radius);
+        let mut harmonics = Vec::new();
+        let mut masses = [0.0; DIRECTIONS];
+        let counts = |light: &[f64; L]| -> f64 { (0..L).map(|j| light[j] / norm[j]).sum::<f64>().max(0.0) };
+        let distances = (0..DIRECTIONS).map(|bin| {
+            // The middle of the bin by its measure.
+            let (direction, width) = frame.direction(bin, [0.5, 0.25]);
+            let mut along = [0.0; DISTANCES];
+            let Some(chord) = sources.columns().chord(place, direction) else { return Bins::new(along) };
+            let way = Way::new(&chord, sources.solved.grid.radius);
+            let mut phases = [[0.0; L]; MOST_SPECIES];
+            for (phase, one) in phases.iter_mut().zip(&sources.optics().species) {
+                *phase = one.phase.values(direction.dot(sun));
+            }
+            let (mut diffuse, mut scattered) = ([0.0; L], 0.0);
+            for (i, mass) in along.iter_mut().enumerate() {
+                let (s, stretch) = way.at(&chord, (i as f64 + 0.5) / DISTANCES as f64);
+                let through = exp_minus(chord.point(s).depth);
+                let there = chord.place(place, direction, s);
+                let scattering = sources.scattering(there.altitude_m);
+                let all: f64 = scattering.iter().flatten().sum();
+                if i % EACH == 0 || scattered <= 0.0 {
+                    diffuse = sources.diffuse::<Scalar>(there, (direction, ()), sun, &scattering, &mut harmonics);
+                    scattered = all;
+                }
+                let mut light = diffuse.map(|light| if scattered > 0.0 { light * all / scattered } else { 0.0 });
+                sources.add_sunlight(&mut light, (there, sun), &scattering, &phases);
+                for j in 0..L {
+                    light[j] *= through[j] * stretch;
+                }
+                *mass = counts(&light);
+            }
+            let mut mass = along.iter().sum::<f64>() / DISTANCES as f64;
+            if chord.ends_on_ground() {
+                let source = sources.ground::<Scalar>(chord.foot(place, direction), sun);
+                let total = chord.total();
+                mass += counts(&std::array::from_fn(|j| (-total[j]).exp() * source.total[j]));
+            }
+            masses[bin] = mass * width;
+            Bins::new(along)
+        });
+        let distances = distances.collect();
+        Entry { directions: Bins::new(masses), distances }
+    }
 }
 
 impl Local<'_> {

@@ -58,6 +58,45 @@ impl<'a, const L: usize> Sources<'a, L> {
         Some([scaled.transmittance(place, sun)?, truly])
     }
 
+    /// The table's source where the species scatter so much.
+    #[inline(always)]
+    pub(super) fn diffuse<R: Tabled>(
+        &self,
+        place: Place,
+        (direction, frame): (DVec3, R::Frame),
+        sun: DVec3,
+        scattering: &[[f64; L]; MOST_SPECIES],
+        harmonics: &mut Vec<f64>,
+    ) -> [R::Seen; L] {
+        let solved = self.solved;
+        let levels = &solved.grid.levels;
+        let above = levels.partition_point(|&level| level <= place.altitude_m).clamp(1, levels.len() - 1);
+        let (a, b) = (levels[above - 1], levels[above]);
+        let share = ((place.altitude_m - a) / (b - a)) as f32;
+        let rows = [(above - 1, 1.0 - share), (above, share)];
+        let species = self.optics().species.len();
+        R::diffuse(solved, &rows, (place, direction, sun), frame, &scattering[..species], harmonics)
+    }
+
+    /// Adds what a metre of air scatters of the sunlight that arrives with the table's extinction, where the phase functions are those.
+    #[inline(always)]
+    pub(super) fn add_sunlight(
+        &self,
+        sum: &mut [f64; L],
+        (place, sun): (Place, DVec3),
+        scattering: &[[f64; L]; MOST_SPECIES],
+        phases: &[[f64; L]; MOST_SPECIES],
+    ) {
+        let Some(through) = self.columns().transmittance(place, sun) else { return };
+        let mut total = *sum;
+        for ((one, scattering), phase) in self.optics().species.iter().zip(scattering).zip(phases) {
+            for j in 0..L {
+                total[j] += phase[j] * one.whole[j] * scattering[j] * through[j];
+            }
+        }
+        *sum = total;
+    }
+
     /// Of a metre of air into the direction looked in, referred to `frame`, in m^-1 sr^-1 per unit solar irradiance.
     #[inline(always)]
     pub(super) fn air<R: Tabled>(
@@ -67,14 +106,9 @@ impl<'a, const L: usize> Sources<'a, L> {
         sun: DVec3,
         harmonics: &mut Vec<f64>,
     ) -> Source<R, L> {
-        let (solved, species) = (self.solved, &self.optics().species);
+        let species = &self.optics().species;
         let scattering = self.scattering(place.altitude_m);
-        let levels = &solved.grid.levels;
-        let above = levels.partition_point(|&level| level <= place.altitude_m).clamp(1, levels.len() - 1);
-        let (a, b) = (levels[above - 1], levels[above]);
-        let share = ((place.altitude_m - a) / (b - a)) as f32;
-        let rows = [(above - 1, 1.0 - share), (above, share)];
-        let tail = R::diffuse(solved, &rows, (place, direction, sun), frame, &scattering[..species.len()], harmonics);
+        let tail = self.diffuse::<R>(place, (direction, frame), sun, &scattering, harmonics);
         let mut source = Source { total: tail, tail };
         if let Some([through, truly]) = self.sunlight(place, sun) {
             let (turn, cosine) = (R::plane(frame, direction, sun).0, direction.dot(sun));
