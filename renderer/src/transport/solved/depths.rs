@@ -110,3 +110,41 @@ impl<const L: usize> Group<L> {
         sum
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::species::whole;
+    use super::*;
+    use crate::transport::tests::{EARTH, exponential, medium, towards};
+
+    #[test]
+    fn depths_of_species_in_groups_add_up_to_those_of_their_sum() {
+        // Five species, of which one has a group to itself, beside columns of all together: six tables of depths that are each right to
+        // 1e-4 e^depth.
+        let top = 6e4;
+        let components: Vec<_> = (0..5)
+            .map(|k| Component {
+                density: exponential(1500.0 * f64::from(k + 1), top),
+                scattering: [1e-5 * f64::from(k + 1), 2e-5],
+                absorption: [0.0; 2],
+                phase: Phase::HenyeyGreenstein { g: [0.5; 2] },
+            })
+            .collect();
+        let air = medium(components, top);
+        let species = whole(&air);
+        let parts: Vec<_> = species.iter().map(|one| (one, one.scattering)).collect();
+        let depths = Depths::new(&parts, &air, EARTH).expect("sound");
+        let (from, direction, sun) = (Place::above(2e3), towards(80.0, 20.0), towards(85.0, 0.0));
+        let columns = Columns::new(&air, EARTH, Tolerance::SOLVE);
+        let chord = columns.chord(from, direction).expect("in the air");
+        let along = depths.along(from, direction);
+        for s in [0.3, 0.6, 1.0].map(|share| chord.ends().0 + share * (chord.ends().1 - chord.ends().0)) {
+            let place = chord.place(from, direction, s);
+            let after = columns.chord(place, sun).map_or([0.0; 2], |chord| chord.total());
+            let pairs = [(along.before(s), chord.point(s).depth), (along.after(place, sun), after)];
+            for (found, right) in pairs.iter().flat_map(|(found, right)| found.iter().zip(right)) {
+                assert!((found - right).abs() <= 6e-4 * right.exp(), "{s}: {found:e}, {right:e}");
+            }
+        }
+    }
+}
