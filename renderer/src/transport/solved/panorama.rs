@@ -204,10 +204,9 @@ impl<const L: usize> Survey<'_, L> {
     /// How many pixels lie in a part.
     fn pixels(&self, between: Between, ends: (f64, f64)) -> usize {
         let (low, high) = (between.at(ends.0) - OFF, between.at(ends.1) + OFF);
-        let below = |angle: f64, itself: bool| {
-            self.zeniths.partition_point(|zenith| *zenith < angle || (itself && *zenith == angle))
-        };
-        self.each * (below(high, true) - below(low, false))
+        let first = self.zeniths.partition_point(|zenith| *zenith < low);
+        let last = self.zeniths.partition_point(|zenith| *zenith <= high);
+        self.each * (last - first)
     }
 
     /// Looks from one azimuth to its opposite, at every node or between those of half as many.
