@@ -32,7 +32,7 @@ const GRIDS: [Fineness; 4] = [Fineness::Coarse, Fineness::Usual, Fineness::Middl
 const SHOWN: f64 = 5e-4;
 
 /// Rounds of certificates in each direction of the dome.
-const ROUNDS: u32 = 32;
+const ROUNDS: u32 = 16;
 
 /// Seconds that a direction is measured at least.
 const LEAST_S: f64 = 0.5;

@@ -27,7 +27,7 @@ const SUNS: [f64; 6] = [60.0, 30.0, 10.0, 2.0, 0.0, -5.0];
 
 /// Directions of the dome, and rounds of fans in each.
 const DIRECTIONS: u32 = 64;
-const ROUNDS: u32 = 12;
+const ROUNDS: u32 = 6;
 
 /// Panels: what certificates find that the error is below, and what tables state.
 const USUAL: [&str; 2] =
@@ -38,7 +38,7 @@ const FINEST: [&str; 2] =
 /// Of polarised light: elevations of the sun in degrees, rounds of fans in clear air and with aerosol, and panels: what certificates find
 /// that the errors of I, Q and U are below, and what they find.
 const POLARISED_SUNS: [f64; 4] = [60.0, 10.0, 2.0, 0.0];
-const POLARISED_ROUNDS: [u32; 2] = [48, 6];
+const POLARISED_ROUNDS: [u32; 2] = [24, 3];
 const BELOW: [&str; 3] = [
     "I: below, with 95 % confidence",
     "Q: below, with 95 % confidence, relative to I",

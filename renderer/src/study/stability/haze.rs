@@ -44,7 +44,7 @@ const SAMPLES: u32 = 16;
 
 /// Where certificates look: elevations of the sun and optical depths; and the rounds that they go.
 const CERTIFIED: ([f64; 5], [f64; 3]) = ([-10.0, -5.0, 0.0, 10.0, 60.0], [0.1, 0.8, 3.0]);
-const ROUNDS: u32 = 4;
+const ROUNDS: u32 = 2;
 
 /// Sunlit air of one aerosol and amount, with its methods.
 struct Air {

@@ -266,7 +266,7 @@ fn of_columns(radius: f64) -> Result<Vec<Cell>, RenderError> {
 
 fn of_solved(radius: f64, size: Size) -> Result<Vec<Cell>, RenderError> {
     let (medium, shape) = (haze().map_err(AirError::from)?, Shape::Sphere { radius_m: radius });
-    let (directions, rounds) = if size == Size::Full { (32, 16) } else { (32, 4) };
+    let (directions, rounds) = if size == Size::Full { (32, 8) } else { (32, 2) };
     let dome: Vec<_> = (0..directions).map(|i| spiral(i, directions, [0.0, 1.0])).collect();
     let columns = Columns::new(&medium, shape, Tolerance::RENDER);
     let from = Place::above(2.0);

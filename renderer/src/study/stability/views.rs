@@ -28,7 +28,7 @@ const SUNS: [f64; 2] = [45.0, 0.0];
 const AZIMUTH: f64 = 90.0;
 
 /// Fans of a direction.
-const FANS: (u32, u32) = (256, 32);
+const FANS: (u32, u32) = (64, 8);
 
 /// Where one looks.
 #[derive(Debug, Clone, Copy, PartialEq)]

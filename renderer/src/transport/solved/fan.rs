@@ -231,7 +231,7 @@ impl<R: Tabled, const L: usize> Estimate<'_, R, L> {
         }
         let straight = straight / (all + straight);
         let rest = 1.0 - straight;
-        Shares { straight, forward: 0.5 * rest * peaked / all, sunward: 0.25 * rest * peaked / all }
+        Shares { straight, forward: 0.6 * rest * peaked / all, sunward: 0.1 * rest * peaked / all }
     }
 
     /// The mean over wavelengths and peaked species of the phase function.
@@ -288,11 +288,10 @@ impl<R: Tabled, const L: usize> Estimate<'_, R, L> {
         let Vertex { shares, guide, .. } = vertex;
         let ahead = vertex.direction.unwrap_or(vertex.place.up);
         let guided = 1.0 - shares.straight - shares.forward - shares.sunward;
-        let (direction, found, frame);
+        let (direction, frame);
         let carried: [R::Contribution; L];
         if u < shares.straight {
             direction = ahead;
-            found = guide.find(direction);
             let mut straight = [0.0; L];
             for (one, scattering) in sources.optics().species.iter().zip(&vertex.scattering) {
                 for j in 0..L {
@@ -302,16 +301,19 @@ impl<R: Tabled, const L: usize> Estimate<'_, R, L> {
             (carried, frame) = (std::array::from_fn(|j| weight[j] * straight[j]), vertex.frame);
         } else {
             let u = u - shares.straight;
-            (direction, found) = if u < shares.forward {
-                let direction = self.about(vertex, ahead, u / shares.forward, turn);
-                (direction, guide.find(direction))
-            } else if u < shares.forward + shares.sunward {
-                let direction = self.about(vertex, sun, (u - shares.forward) / shares.sunward, turn);
-                (direction, guide.find(direction))
+            let mut density;
+            if u < shares.forward + shares.sunward {
+                direction = if u < shares.forward {
+                    self.about(vertex, ahead, u / shares.forward, turn)
+                } else {
+                    self.about(vertex, sun, (u - shares.forward) / shares.sunward, turn)
+                };
+                density = guided * guide.density(direction);
             } else {
-                guide.sample([((u - shares.forward - shares.sunward) / guided).clamp(0.0, 1.0 - 1e-12), turn])
-            };
-            let mut density = guided * found.density;
+                let u = ((u - shares.forward - shares.sunward) / guided).clamp(0.0, 1.0 - 1e-12);
+                (direction, density) = guide.sample([u, turn]);
+                density *= guided;
+            }
             if shares.forward > 0.0 {
                 density += shares.forward * self.peak(vertex, ahead.dot(direction));
                 density += shares.sunward * self.peak(vertex, sun.dot(direction));
@@ -332,7 +334,8 @@ impl<R: Tabled, const L: usize> Estimate<'_, R, L> {
             reached.push(Reached { place, direction: None, frame, weight, source: sources.ground(place, sun) });
         }
         let way = Way::new(&chord, sources.solved.grid.radius);
-        let (v, density, _) = guide.distances(found).sample(distance);
+        let glow = &self.certificate.guide.glow;
+        let (v, density) = glow.draw(sources, (&chord, &way), (vertex.place, direction), sun, distance);
         let (s, stretch) = way.at(&chord, v);
         let through = exp_minus(chord.point(s).depth);
         let weight = std::array::from_fn(|j| R::carried(&carried[j], through[j], stretch, density));

@@ -1,6 +1,7 @@
-//! Where light comes from at a place: a density of directions and distances, from a solved table.
+//! Where light comes from at a place: a density of directions, from a solved table.
 
 use super::Solved;
+use super::glow::Glow;
 use super::line::MOST_SPECIES;
 use super::sources::Sources;
 use crate::atmosphere::Chord;
@@ -21,14 +22,14 @@ const AZIMUTHS: usize = 8;
 
 const DIRECTIONS: usize = ALL_ZENITHS * AZIMUTHS;
 
-/// Distances.
-pub(super) const DISTANCES: usize = 32;
+/// Distances at which light in a direction is looked at.
+const DISTANCES: usize = 16;
 
 /// Every which of them the diffuse light is looked up at, which changes little.
 const EACH: usize = 4;
 
 /// The share of all densities that is even.
-pub(super) const EVEN: f64 = 0.1;
+pub(super) const EVEN: f64 = 0.05;
 
 /// Between the sun's zenith angles for which there is a density, in radians.
 const SUN_STEP: f64 = 4.0 * PI / 180.0;
@@ -75,28 +76,15 @@ impl<const N: usize> Bins<N> {
     }
 }
 
-/// What a place sees: directions, and distances in each.
-#[derive(Debug, Clone)]
-struct Entry {
-    directions: Bins<DIRECTIONS>,
-    distances: Vec<Bins<DISTANCES>>,
-}
-
 /// Densities at the levels of a table for some zenith angles of the sun.
 #[derive(Debug)]
 pub(super) struct Guide {
     first_sun: f64,
     suns: usize,
-    /// [sun][level]
-    entries: Vec<Entry>,
-}
-
-/// A direction that was drawn or found.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Direction {
-    bin: usize,
-    /// Its density in sr^-1.
-    pub(super) density: f64,
+    /// [sun][level]: directions in which a place sees light.
+    entries: Vec<Bins<DIRECTIONS>>,
+    /// Where in a direction it comes from.
+    pub(super) glow: Glow,
 }
 
 /// The directions about a place with a sun.
@@ -172,7 +160,7 @@ impl Frame {
 /// What a [`Guide`] says at one place.
 #[derive(Clone, Copy)]
 pub(super) struct Local<'a> {
-    entry: &'a Entry,
+    directions: &'a Bins<DIRECTIONS>,
     frame: Frame,
 }
 
@@ -196,7 +184,7 @@ impl Guide {
                 vectorised::<L, _>(Survey { sources, place, sun, norm })
             })
             .collect();
-        Self { first_sun, suns, entries }
+        Self { first_sun, suns, entries, glow: Glow::new(sources, norm) }
     }
 
     /// At a place, with the sun there.
@@ -208,7 +196,10 @@ impl Guide {
         let above = levels.partition_point(|&level| level < place.altitude_m).clamp(1, levels.len() - 1);
         let nearer = place.altitude_m - levels[above - 1] < levels[above] - place.altitude_m;
         let level = if nearer { above - 1 } else { above };
-        Local { entry: &self.entries[at * levels.len() + level], frame: Frame::new(place, sun, solved.grid.radius) }
+        Local {
+            directions: &self.entries[at * levels.len() + level],
+            frame: Frame::new(place, sun, solved.grid.radius),
+        }
     }
 }
 
@@ -221,27 +212,27 @@ struct Survey<'a, const L: usize> {
 }
 
 impl<const L: usize> NullaryFnOnce for Survey<'_, L> {
-    type Output = Entry;
+    type Output = Bins<DIRECTIONS>;
 
     #[inline(always)]
-    fn call(self) -> Entry {
+    fn call(self) -> Bins<DIRECTIONS> {
         let Self { sources, place, sun, norm } = self;
         let frame = Frame::new(place, sun, sources.solved.grid.radius);
         let mut harmonics = Vec::new();
         let mut masses = [0.0; DIRECTIONS];
         let counts = |light: &[f64; L]| -> f64 { (0..L).map(|j| light[j] / norm[j]).sum::<f64>().max(0.0) };
-        let distances = (0..DIRECTIONS).map(|bin| {
+        for (bin, mass) in masses.iter_mut().enumerate() {
             // The middle of the bin by its measure.
             let (direction, width) = frame.direction(bin, [0.5, 0.25]);
-            let mut along = [0.0; DISTANCES];
-            let Some(chord) = sources.columns().chord(place, direction) else { return Bins::new(along) };
+            let Some(chord) = sources.columns().chord(place, direction) else { continue };
             let way = Way::new(&chord, sources.solved.grid.radius);
             let mut phases = [[0.0; L]; MOST_SPECIES];
             for (phase, one) in phases.iter_mut().zip(&sources.optics().species) {
                 *phase = one.phase.values(direction.dot(sun));
             }
             let (mut diffuse, mut scattered) = ([0.0; L], 0.0);
-            for (i, mass) in along.iter_mut().enumerate() {
+            let mut seen = 0.0;
+            for i in 0..DISTANCES {
                 let (s, stretch) = way.at(&chord, (i as f64 + 0.5) / DISTANCES as f64);
                 let through = exp_minus(chord.point(s).depth);
                 let there = chord.place(place, direction, s);
@@ -256,43 +247,34 @@ impl<const L: usize> NullaryFnOnce for Survey<'_, L> {
                 for j in 0..L {
                     light[j] *= through[j] * stretch;
                 }
-                *mass = counts(&light);
+                seen += counts(&light) / DISTANCES as f64;
             }
-            let mut mass = along.iter().sum::<f64>() / DISTANCES as f64;
             if chord.ends_on_ground() {
                 let source = sources.ground::<Scalar>(chord.foot(place, direction), sun);
                 let total = chord.total();
-                mass += counts(&std::array::from_fn(|j| (-total[j]).exp() * source.total[j]));
+                seen += counts(&std::array::from_fn(|j| (-total[j]).exp() * source.total[j]));
             }
-            masses[bin] = mass * width;
-            Bins::new(along)
-        });
-        let distances = distances.collect();
-        Entry { directions: Bins::new(masses), distances }
+            *mass = seen * width;
+        }
+        Bins::new(masses)
     }
 }
 
 impl Local<'_> {
-    /// Draws a direction.
+    /// Draws a direction; its density in sr^-1, too.
     #[inline(always)]
-    pub(super) fn sample(&self, [u, v]: [f64; 2]) -> (DVec3, Direction) {
-        let (x, density, bin) = self.entry.directions.sample(u);
+    pub(super) fn sample(&self, [u, v]: [f64; 2]) -> (DVec3, f64) {
+        let (x, density, bin) = self.directions.sample(u);
         let within = (x * DIRECTIONS as f64).fract();
         let (direction, width) = self.frame.direction(bin, [within, v]);
-        (direction, Direction { bin, density: density / DIRECTIONS as f64 / width.max(1e-30) })
+        (direction, density / DIRECTIONS as f64 / width.max(1e-30))
     }
 
-    /// What the density of a direction is.
+    /// What the density of a direction is, in sr^-1.
     #[inline(always)]
-    pub(super) fn find(&self, direction: DVec3) -> Direction {
+    pub(super) fn density(&self, direction: DVec3) -> f64 {
         let (bin, width) = self.frame.find(direction);
-        Direction { bin, density: self.entry.directions.density(bin) / DIRECTIONS as f64 / width.max(1e-30) }
-    }
-
-    /// Distances in a direction.
-    #[inline(always)]
-    pub(super) fn distances(&self, direction: Direction) -> &Bins<DISTANCES> {
-        &self.entry.distances[direction.bin]
+        self.directions.density(bin) / DIRECTIONS as f64 / width.max(1e-30)
     }
 }
 
@@ -300,10 +282,13 @@ impl Local<'_> {
 /// close steps where the air is dense.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {
-    lowest: f64,
-    first: f64,
-    last: f64,
-    radius: f64,
+    /// The lowest altitude of the chord in m.
+    pub(super) lowest: f64,
+    /// The root at both ends, in m^0.5.
+    pub(super) first: f64,
+    pub(super) last: f64,
+    /// Of the planet, in m.
+    pub(super) radius: f64,
 }
 
 impl Way {

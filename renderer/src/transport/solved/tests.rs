@@ -362,7 +362,7 @@ fn certified_radiance_does_not_depend_on_the_table() {
             let paths = estimate(Estimator::Paths, &problem, from, direction, 30_000, 3);
             for (i, table) in tables.iter().enumerate() {
                 let certificate = Certificate::new(table, columns.clone(), from, sun.direction());
-                let found = certificate.radiance(direction, Fan::USUAL, fans, 1, 1);
+                let found = certificate.radiance(direction, Fan::SMALL, fans, 1, 1);
                 for (j, (mean, error)) in paths.iter().enumerate() {
                     let allowed = 4.5 * (found.variance[j] + error * error).sqrt();
                     let off = found.mean[j] - mean;

@@ -59,7 +59,7 @@ fn certified_stokes_parameters_do_not_depend_on_the_table() {
             for (i, table) in tables.iter().enumerate() {
                 let certificate = Certificate::new(table, columns.clone(), from, sun.direction());
                 let look = (direction, level(direction));
-                let found = certificate.stokes(look, all, (Fan::USUAL, 16), (1, 1)).expect("polarised");
+                let found = certificate.stokes(look, all, (Fan::SMALL, 16), (1, 1)).expect("polarised");
                 for (j, paths) in paths.iter().enumerate() {
                     for (k, (mean, error)) in paths.iter().enumerate() {
                         let allowed = 4.5 * (found[k].variance[j] + error * error).sqrt();
@@ -106,9 +106,9 @@ fn what_depolarises_is_certified_as_scalar_light() {
     let table = Solved::polarised(&haze, EARTH, [0.3; 4], &COARSE).expect("round");
     let certificate = Certificate::new(&table, columns(&haze, EARTH), from, sun);
     let [i, q, u] = certificate
-        .stokes((direction, level(direction)), all, (Fan::USUAL, 4), (1, 1))
+        .stokes((direction, level(direction)), all, (Fan::SMALL, 4), (1, 1))
         .expect("a table of polarised light");
-    let scalar = certificate.radiance(direction, Fan::USUAL, 4, 1, 1);
+    let scalar = certificate.radiance(direction, Fan::SMALL, 4, 1, 1);
     for j in 0..4 {
         assert!((i.mean[j] / scalar.mean[j] - 1.0).abs() < 1e-9, "{j}: {:e}, {:e}", i.mean[j], scalar.mean[j]);
         assert_eq!((q.mean[j], u.mean[j]), (0.0, 0.0));
@@ -121,5 +121,5 @@ fn a_table_without_polarisation_certifies_none() {
     let table = Solved::new(&medium, EARTH, [0.3; 2], &COARSE).expect("round");
     let certificate = Certificate::new(&table, columns(&medium, EARTH), Place::above(2.0), towards(70.0, 0.0));
     let view = towards(60.0, 30.0);
-    assert_eq!(certificate.stokes((view, level(view)), all, (Fan::USUAL, 2), (1, 1)), None);
+    assert_eq!(certificate.stokes((view, level(view)), all, (Fan::SMALL, 2), (1, 1)), None);
 }
