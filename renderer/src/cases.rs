@@ -13,17 +13,28 @@ mod physics;
 pub use input::{CasesError, Suite, Tier, parse, read};
 
 use crate::sampling::{POINTS, Sampler};
-use crate::transport::Method;
+use crate::transport::Estimator;
 use physics::{Estimand, Sample, Shared};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What answers cases.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Solved tables, with the error that they state.
+    Solved,
+    /// Certificates of the usual solved tables ([`crate::transport::Certificate`]): fans that end in them, unbiased.
+    Certified,
+    /// Paths.
+    Sampled(Estimator),
+}
 
 /// How much to sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Effort {
     /// Until the standard error of a case is at most this share of its value; of I for a Stokes parameter.
     Error(f64),
-    /// That many paths a case.
+    /// That many paths a case, or fans.
     Paths(u64),
 }
 
@@ -32,7 +43,7 @@ pub enum Effort {
 pub struct Settings {
     /// Which cases.
     pub tier: Tier,
-    /// Which estimator.
+    /// What answers.
     pub method: Method,
     /// How much to sample.
     pub effort: Effort,
@@ -49,7 +60,7 @@ pub struct Answer {
     pub value: f64,
     /// Its standard error.
     pub stderr: f64,
-    /// Paths taken.
+    /// Paths taken, or fans.
     pub paths: u64,
 }
 
@@ -140,6 +151,9 @@ fn estimate(id: &str, estimand: &Estimand, settings: &Settings, index: u64) -> A
     }
     if let Some((value, stderr)) = estimand.solution() {
         return Answer { id: id.into(), value, stderr, paths: 0 };
+    }
+    if let Some((value, stderr, fans)) = estimand.certified(settings, index) {
+        return Answer { id: id.into(), value, stderr, paths: fans };
     }
     let replicates = |moments: &mut Moments, seed: u64, to: u64, points: u64| {
         for replicate in moments.count..to {

@@ -8,9 +8,9 @@
 
 use crate::judge::{Compared, GROUP_Z, Statistics, WORST_Z, percent};
 use crate::{Context, Section, ValidationError, Verdict, references};
-use renderer::cases::{self, Effort, Refusal, Settings, Tier};
+use renderer::cases::{self, Effort, Method, Refusal, Settings, Tier};
 use renderer::study::{Chart, Point};
-use renderer::transport::Method;
+use renderer::transport::Estimator;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -23,6 +23,9 @@ const PATHS: (u64, u64) = (16_384, 4096);
 
 /// Relative standard error of a case by the judge.
 const JUDGED: f64 = 0.02;
+
+/// And of certificates.
+const CERTIFIED: f64 = 0.002;
 
 /// References below this have no relative error: of the solar irradiance 1e-9 is not resolved.
 const RESOLVED: f64 = 1e-8;
@@ -54,6 +57,12 @@ pub fn make(context: &Context<'_>) -> Result<Section, ValidationError> {
         let day = case["sza_deg"].as_f64().is_some_and(|zenith| zenith <= 88.0);
         is(case, "tier", "core") && day && !is(case, "observer", "space")
     };
+    let certified: fn(&Value) -> bool = |case| {
+        is(case, "geometry", "spherical")
+            && is(case, "tier", "core")
+            && is(case, "orders", "all")
+            && is(case, "quantity", "radiance")
+    };
     let runs = [
         Run {
             title: "Solved tables",
@@ -65,12 +74,25 @@ pub fn make(context: &Context<'_>) -> Result<Section, ValidationError> {
         },
         Run {
             title: "Paths",
-            method: Method::Paths,
+            method: Method::Sampled(Estimator::Paths),
             effort: Effort::Paths(if context.quick { PATHS.1 } else { PATHS.0 }),
             takes: if context.quick { core } else { traced },
             panel: "paths",
         },
-        Run { title: "The judge", method: Method::Judge, effort: Effort::Error(JUDGED), takes: bright, panel: "judge" },
+        Run {
+            title: "Certificates",
+            method: Method::Certified,
+            effort: Effort::Error(if context.quick { 0.01 } else { CERTIFIED }),
+            takes: certified,
+            panel: "certificates",
+        },
+        Run {
+            title: "The judge",
+            method: Method::Sampled(Estimator::Judge),
+            effort: Effort::Error(JUDGED),
+            takes: bright,
+            panel: "judge",
+        },
     ];
     let mut section = Section::default();
     section.say(&format!(

@@ -1,13 +1,16 @@
 //! From a case to something that can be sampled.
 
 use super::input::{Case, Layer, Profile};
+use super::{Effort, Method, Settings};
 use crate::atmosphere::{Columns, Component, Medium, Tolerance};
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
 use crate::phase::Phase;
 use crate::polarisation::{Frame, Stokes};
 use crate::sampling::{Sampler, cosine_hemisphere};
-use crate::transport::{self, Estimator, FINER, Method, Problem, Resolution, SolveError, Solved, covers_planet};
+use crate::transport::{
+    self, Certificate, Estimator, FINER, Fan, Problem, Resolution, SolveError, Solved, covers_planet,
+};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -37,11 +40,16 @@ pub(super) struct Estimand {
 /// Relative error of what solved tables have in common with coarser ones, of single scattering and of all orders.
 const UNSEEN: (f64, f64) = (2e-4, 5e-4);
 
+/// Fans of a certificate's pilot, which only tells how many are needed, and the most.
+const PILOT_FANS: u32 = 32;
+const MOST_FANS: u32 = 1 << 14;
+
 /// What a radiance is found with.
 #[derive(Debug)]
 enum Tables {
     Columns(Estimator, Arc<Columns<1>>),
     Solved(Arc<Pair>),
+    Certified(Arc<Solved<1>>, Arc<Columns<1>>),
 }
 
 /// A solved table, and a coarser one that tells how exact it is; none of single scattering.
@@ -164,6 +172,37 @@ impl Estimand {
         }
     }
 
+    /// The mean of fans that end in a solved table, its standard error, and how many fans; if the case is certified. What single
+    /// scattering and the columns may be off is in the error.
+    pub(super) fn certified(&self, settings: &Settings, index: u64) -> Option<(f64, f64, u64)> {
+        let (Tables::Certified(solved, columns), Quantity::Radiance(Look { direction, sideways }, parameter)) =
+            (&self.tables, self.quantity)
+        else {
+            return None;
+        };
+        let certificate = Certificate::new(solved, Columns::clone(columns), self.place, self.sun.direction());
+        let look = (direction, Frame::new(direction, sideways));
+        // Mean, variance and radiance.
+        let mean = |fans: u32, seed: u64| {
+            let both =
+                certificate.stokes(look, |seen| [parameter.of(*seen), seen.i], (Fan::SMALL, fans), (seed, index));
+            let radiance = || certificate.radiance(direction, Fan::SMALL, fans, seed, index);
+            let [found, radiance] = both.unwrap_or_else(|| [radiance(); 2]);
+            (found.mean[0], found.variance[0], radiance.mean[0])
+        };
+        let fans = match settings.effort {
+            Effort::Paths(fans) => fans.clamp(2, u64::from(MOST_FANS)) as u32,
+            // The pilot is thrown away, so that it does not decide what the mean is.
+            Effort::Error(error) => {
+                let (_, variance, radiance) = mean(PILOT_FANS, !settings.seed);
+                let one = f64::from(PILOT_FANS) * variance / (error * radiance).powi(2);
+                (1.1 * one).ceil().clamp(f64::from(PILOT_FANS), f64::from(MOST_FANS)) as u32
+            }
+        };
+        let (value, variance, radiance) = mean(fans, settings.seed);
+        Some((self.f0 * value, self.f0 * variance.sqrt().hypot(UNSEEN.0 * radiance), u64::from(fans)))
+    }
+
     /// mu_0 exp(-tau) F_0 at the place.
     fn direct(&self) -> f64 {
         let sun = self.sun.direction();
@@ -197,8 +236,10 @@ impl Estimand {
     fn stokes(&self, look: Look, sampler: &mut Sampler) -> Stokes {
         let Look { direction, sideways } = look;
         let (estimator, columns) = match &self.tables {
-            Tables::Solved(pair) => return Stokes { i: self.solved(pair, look, Parameter::I).0, ..Stokes::default() },
             Tables::Columns(estimator, columns) => (*estimator, columns),
+            Tables::Solved(_) | Tables::Certified(..) => {
+                unreachable!("only radiances are solved, and those are not sampled")
+            }
         };
         let problem = Problem {
             texture: None,
@@ -226,8 +267,12 @@ impl Estimand {
 #[derive(Debug, Default)]
 pub(super) struct Shared {
     columns: BTreeMap<(String, u64), Arc<Columns<1>>>,
-    solved: BTreeMap<(String, u64, u64, String), Arc<Pair>>,
+    solved: BTreeMap<Ground, Arc<Pair>>,
+    certified: BTreeMap<Ground, Arc<Solved<1>>>,
 }
+
+/// Profile, radius, ground, and whatever else a solution depends on.
+type Ground = (String, u64, u64, String);
 
 impl Shared {
     fn key(case: &Case) -> Option<(String, u64)> {
@@ -235,8 +280,7 @@ impl Shared {
         (case.geometry == "spherical").then(|| (profile, case.planet_radius_km.map_or(0, f64::to_bits)))
     }
 
-    fn ground_key(case: &Case) -> Option<(String, u64, u64, String)> {
-        // Whatever else a solution depends on.
+    fn ground_key(case: &Case) -> Option<Ground> {
         let phase = format!("{:?} {} {:?}", case.phase, case.orders, polarised(case));
         Self::key(case).map(|(profile, radius)| (profile, radius, case.albedo.to_bits(), phase))
     }
@@ -250,22 +294,29 @@ impl Shared {
         let mut shared = Self::default();
         for case in cases {
             let (Some(key), Some(ground)) = (Self::key(case), Self::ground_key(case)) else { continue };
-            let ready = match method {
-                Method::Solved => shared.solved.contains_key(&ground),
-                _ => shared.columns.contains_key(&key),
+            let solves = match method {
+                Method::Solved => !shared.solved.contains_key(&ground),
+                Method::Certified => !shared.certified.contains_key(&ground),
+                Method::Sampled(_) => false,
             };
-            if ready {
+            let columns = method != Method::Solved && !shared.columns.contains_key(&key);
+            if !solves && !columns {
                 continue;
             }
             let Ok((shape, medium)) = air(case, profiles) else { continue };
-            if method == Method::Solved {
-                if let Ok(pair) =
-                    Pair::new(&medium, shape, case.albedo, (case.orders == "1", polarised(case) == Ok(true)))
-                {
+            if columns {
+                shared.columns.insert(key, Arc::new(Columns::new(&medium, shape, Tolerance::RENDER)));
+            }
+            let polarised = polarised(case) == Ok(true);
+            if solves && method == Method::Solved {
+                if let Ok(pair) = Pair::new(&medium, shape, case.albedo, (case.orders == "1", polarised)) {
                     shared.solved.insert(ground, Arc::new(pair));
                 }
-            } else {
-                shared.columns.insert(key, Arc::new(Columns::new(&medium, shape, Tolerance::RENDER)));
+            } else if solves && covers_planet(shape).is_ok() {
+                let solve = if polarised { Solved::polarised } else { Solved::new };
+                if let Ok(solved) = solve(&medium, shape, [case.albedo], &Resolution::RENDER) {
+                    shared.certified.insert(ground, Arc::new(solved));
+                }
             }
         }
         shared
@@ -278,6 +329,10 @@ impl Shared {
 
     fn solved(&self, case: &Case) -> Option<Arc<Pair>> {
         Self::ground_key(case).and_then(|key| self.solved.get(&key)).cloned()
+    }
+
+    fn certified(&self, case: &Case) -> Option<Arc<Solved<1>>> {
+        Self::ground_key(case).and_then(|key| self.certified.get(&key)).cloned()
     }
 }
 
@@ -359,16 +414,22 @@ pub(super) fn prepare(
         "flux_up_top" => Quantity::Upward,
         other => return Err(format!("quantity {other:?} is not offered")),
     };
-    let tables = match method.estimator() {
-        Some(estimator) => Tables::Columns(estimator, shared.columns(case, shape, &medium)),
-        None => {
+    let tables = match method {
+        Method::Sampled(estimator) => Tables::Columns(estimator, shared.columns(case, shape, &medium)),
+        Method::Certified if max_orders.is_some() => return Err("certificates are of all orders".into()),
+        Method::Solved | Method::Certified => {
             if max_orders.is_some_and(|orders| orders > 1) {
                 return Err("a solved table has one order or all".into());
             }
             if !matches!(quantity, Quantity::Radiance(..)) {
                 return Err("solved tables answer radiances".into());
             }
-            Tables::Solved(shared.solved(case).ok_or("solved tables need a round planet")?)
+            const NEEDED: &str = "solved tables need a round planet";
+            if method == Method::Certified {
+                Tables::Certified(shared.certified(case).ok_or(NEEDED)?, shared.columns(case, shape, &medium))
+            } else {
+                Tables::Solved(shared.solved(case).ok_or(NEEDED)?)
+            }
         }
     };
     Ok(Estimand {

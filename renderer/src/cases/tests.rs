@@ -16,7 +16,7 @@ fn case(id: &str, rest: &str) -> String {
 }
 
 fn answer(text: &str, effort: Effort) -> Report {
-    let settings = Settings { tier: Tier::Full, method: Method::Paths, effort, seed: 1 };
+    let settings = Settings { tier: Tier::Full, method: Method::Sampled(Estimator::Paths), effort, seed: 1 };
     run(&suite(text), &settings, &|_, _| {})
 }
 

@@ -21,13 +21,13 @@ pub(super) struct RadianceArgs {
     /// Which cases
     #[arg(long, default_value = "core")]
     pub tier: TierName,
-    /// Solved tables, paths on column tables, or the brute-force judge
+    /// What answers
     #[arg(long, value_name = "METHOD", default_value = "paths")]
     pub method: MethodName,
     /// Standard error of each case relative to its value (of Q and U to I), 1e-5 to 1: 1% or 0.01 [default: 1%]
     #[arg(long, value_name = "E", value_parser = share, conflicts_with = "spp")]
     pub error: Option<f64>,
-    /// Paths for each case instead, 2 or more [default: as --error]
+    /// Paths for each case instead, or fans, 2 or more [default: as --error]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..))]
     pub spp: Option<u64>,
     /// Seed of the random numbers, 0 to 2^64 - 1
@@ -58,7 +58,7 @@ pub(super) fn run(args: &RadianceArgs) -> Result<Outcome, Failure> {
     super::announce(path, args.quiet);
     super::write(path, cases::to_csv(&report.answers).as_bytes())?;
     if !args.quiet {
-        describe(&report);
+        describe(&report, settings.method == cases::Method::Certified);
         println!("time        {} on {} threads", duration(line.elapsed().as_secs_f64()), pool.current_num_threads());
         println!("written     {}", path.display());
     }
@@ -69,9 +69,9 @@ pub(super) fn run(args: &RadianceArgs) -> Result<Outcome, Failure> {
 const SHOWN: usize = 5;
 
 /// How many were answered, and the others by the reason why not.
-fn describe(report: &Report) {
+fn describe(report: &Report, fans: bool) {
     let paths: u64 = report.answers.iter().map(|answer| answer.paths).sum();
-    println!("answered    {} cases with {paths} paths", report.answers.len());
+    println!("answered    {} cases with {paths} {}", report.answers.len(), if fans { "fans" } else { "paths" });
     let mut reasons: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for Refusal { id, why } in &report.refusals {
         reasons.entry(why).or_default().push(id);

@@ -1,7 +1,7 @@
 //! What the values of flags may be.
 
 use crate::atmosphere::{HazePhase, OzoneSource};
-use crate::cases::Tier;
+use crate::cases::{self, Tier};
 use crate::plan::Metric;
 use crate::render::Shard;
 use crate::scene::word;
@@ -12,8 +12,13 @@ use tables::views::Biome;
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum MethodName {
+    /// Solved tables, with the error that they state
     Solved,
+    /// Fans that end in the usual solved tables: unbiased
+    Certified,
+    /// Paths on column tables
     Paths,
+    /// The brute-force judge
     Judge,
 }
 
@@ -73,12 +78,13 @@ impl From<EstimatorName> for Estimator {
     }
 }
 
-impl From<MethodName> for Method {
+impl From<MethodName> for cases::Method {
     fn from(name: MethodName) -> Self {
         match name {
             MethodName::Solved => Self::Solved,
-            MethodName::Paths => Self::Paths,
-            MethodName::Judge => Self::Judge,
+            MethodName::Certified => Self::Certified,
+            MethodName::Paths => Self::Sampled(Estimator::Paths),
+            MethodName::Judge => Self::Sampled(Estimator::Judge),
         }
     }
 }
