@@ -20,7 +20,7 @@ const DIRECTIONS: u32 = 16;
 
 /// Fans in each direction and round, and rounds, of which the fastest counts.
 const FANS: u32 = 8;
-const ROUNDS: u64 = 4;
+const ROUNDS: u64 = 16;
 
 /// Certificates for one sun.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -39,12 +39,8 @@ const FINEST: [&str; 2] =
 /// that the errors of I, Q and U are below, and what they find.
 const POLARISED_SUNS: [f64; 4] = [60.0, 10.0, 2.0, 0.0];
 const POLARISED_ROUNDS: [u32; 2] = [24, 3];
-const BELOW: [&str; 3] = [
-    "I: below, with 95 % confidence",
-    "Q: below, with 95 % confidence, relative to I",
-    "U: below, with 95 % confidence, relative to I",
-];
-const RMS: [&str; 3] = ["I: found (rms)", "Q: found (rms), relative to I", "U: found (rms), relative to I"];
+const BELOW: [&str; 3] = ["below: I", "below: Q", "below: U"];
+const RMS: [&str; 3] = ["found (rms): I", "found (rms): Q", "found (rms): U"];
 
 /// Directions above the horizon, even in solid angle.
 pub(super) fn dome() -> Vec<DVec3> {
@@ -124,7 +120,7 @@ pub fn polarised_suns(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Ch
     }
     points.sort_by_key(|point| point.panel);
     Ok(Chart {
-        title: "Solved tables of polarised light over the sun's elevation: errors relative to I, 64 directions, 8 wavelengths"
+        title: "Solved tables of polarised light: errors found, and what they are below with 95 % confidence"
             .to_owned(),
         axes: ["sun elevation / degrees", "error relative to I / %"],
         points,
