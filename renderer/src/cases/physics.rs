@@ -1,7 +1,7 @@
 //! From a case to something that can be sampled.
 
 use super::input::{Case, Layer, Profile};
-use super::{Effort, Method, Settings};
+use super::{Effort, Method, Settings, TABLES};
 use crate::atmosphere::{Columns, Component, Medium, Tolerance};
 use crate::geometry::{Place, Shape};
 use crate::light::SunDisc;
@@ -49,10 +49,10 @@ const MOST_FANS: u32 = 1 << 14;
 enum Tables {
     Columns(Estimator, Arc<Columns<1>>),
     Solved(Arc<Pair>),
-    Certified(Arc<Solved<1>>, Arc<Columns<1>>),
+    Certified(Arc<Pair>, Arc<Columns<1>>),
 }
 
-/// A solved table, and a coarser one that tells how exact it is; none of single scattering.
+/// A solved table, and a coarser one that tells how exact it is; none of single scattering, and of what is certified.
 #[derive(Debug)]
 struct Pair {
     solved: Solved<1>,
@@ -72,6 +72,13 @@ impl Pair {
         let coarse = solve(medium, shape, [albedo], &coarser)?;
         let solved = coarse.again(&fine, None)?;
         Ok(Self { solved, coarse: Some(coarse) })
+    }
+
+    /// The usual table alone, for a certificate.
+    fn usual(medium: &Medium<1>, shape: Shape, albedo: f64, polarised: bool) -> Result<Self, SolveError> {
+        covers_planet(shape)?;
+        let solve = if polarised { Solved::polarised } else { Solved::new };
+        Ok(Self { solved: solve(medium, shape, [albedo], &Resolution::RENDER)?, coarse: None })
     }
 }
 
@@ -173,14 +180,14 @@ impl Estimand {
     }
 
     /// The mean of fans that end in a solved table, its standard error, and how many fans; if the case is certified. What single
-    /// scattering and the columns may be off is in the error.
+    /// scattering and the columns may be off is in the error: relative to the radiance, and to the sun ([`TABLES`]).
     pub(super) fn certified(&self, settings: &Settings, index: u64) -> Option<(f64, f64, u64)> {
-        let (Tables::Certified(solved, columns), Quantity::Radiance(Look { direction, sideways }, parameter)) =
+        let (Tables::Certified(pair, columns), Quantity::Radiance(Look { direction, sideways }, parameter)) =
             (&self.tables, self.quantity)
         else {
             return None;
         };
-        let certificate = Certificate::new(solved, Columns::clone(columns), self.place, self.sun.direction());
+        let certificate = Certificate::new(&pair.solved, Columns::clone(columns), self.place, self.sun.direction());
         let look = (direction, Frame::new(direction, sideways));
         // Mean, variance and radiance.
         let mean = |fans: u32, seed: u64| {
@@ -191,16 +198,19 @@ impl Estimand {
             (found.mean[0], found.variance[0], radiance.mean[0])
         };
         let fans = match settings.effort {
-            Effort::Paths(fans) => fans.clamp(2, u64::from(MOST_FANS)) as u32,
+            Effort::Paths(fans) => u32::try_from(fans).unwrap_or(u32::MAX),
             // The pilot is thrown away, so that it does not decide what the mean is.
             Effort::Error(error) => {
                 let (_, variance, radiance) = mean(PILOT_FANS, !settings.seed);
-                let one = f64::from(PILOT_FANS) * variance / (error * radiance).powi(2);
-                (1.1 * one).ceil().clamp(f64::from(PILOT_FANS), f64::from(MOST_FANS)) as u32
+                let wanted = (error * radiance).powi(2);
+                // A relative error cannot be had of nothing.
+                let fans = if wanted > 0.0 { 1.1 * f64::from(PILOT_FANS) * variance / wanted } else { 0.0 };
+                fans.ceil().clamp(f64::from(PILOT_FANS), f64::from(MOST_FANS)) as u32
             }
         };
         let (value, variance, radiance) = mean(fans, settings.seed);
-        Some((self.f0 * value, self.f0 * variance.sqrt().hypot(UNSEEN.0 * radiance), u64::from(fans)))
+        let error = variance.sqrt().hypot(UNSEEN.0 * radiance).hypot(TABLES.1);
+        Some((self.f0 * value, self.f0 * error, u64::from(fans)))
     }
 
     /// mu_0 exp(-tau) F_0 at the place.
@@ -268,7 +278,6 @@ impl Estimand {
 pub(super) struct Shared {
     columns: BTreeMap<(String, u64), Arc<Columns<1>>>,
     solved: BTreeMap<Ground, Arc<Pair>>,
-    certified: BTreeMap<Ground, Arc<Solved<1>>>,
 }
 
 /// Profile, radius, ground, and whatever else a solution depends on.
@@ -294,11 +303,13 @@ impl Shared {
         let mut shared = Self::default();
         for case in cases {
             let (Some(key), Some(ground)) = (Self::key(case), Self::ground_key(case)) else { continue };
-            let solves = match method {
-                Method::Solved => !shared.solved.contains_key(&ground),
-                Method::Certified => !shared.certified.contains_key(&ground),
+            // What is refused needs no table.
+            let answers = match method {
+                Method::Solved => true,
+                Method::Certified => case.orders == "all",
                 Method::Sampled(_) => false,
             };
+            let solves = answers && !shared.solved.contains_key(&ground);
             let columns = method != Method::Solved && !shared.columns.contains_key(&key);
             if !solves && !columns {
                 continue;
@@ -307,15 +318,15 @@ impl Shared {
             if columns {
                 shared.columns.insert(key, Arc::new(Columns::new(&medium, shape, Tolerance::RENDER)));
             }
-            let polarised = polarised(case) == Ok(true);
-            if solves && method == Method::Solved {
-                if let Ok(pair) = Pair::new(&medium, shape, case.albedo, (case.orders == "1", polarised)) {
+            if solves {
+                let polarised = polarised(case) == Ok(true);
+                let pair = if method == Method::Certified {
+                    Pair::usual(&medium, shape, case.albedo, polarised)
+                } else {
+                    Pair::new(&medium, shape, case.albedo, (case.orders == "1", polarised))
+                };
+                if let Ok(pair) = pair {
                     shared.solved.insert(ground, Arc::new(pair));
-                }
-            } else if solves && covers_planet(shape).is_ok() {
-                let solve = if polarised { Solved::polarised } else { Solved::new };
-                if let Ok(solved) = solve(&medium, shape, [case.albedo], &Resolution::RENDER) {
-                    shared.certified.insert(ground, Arc::new(solved));
                 }
             }
         }
@@ -329,10 +340,6 @@ impl Shared {
 
     fn solved(&self, case: &Case) -> Option<Arc<Pair>> {
         Self::ground_key(case).and_then(|key| self.solved.get(&key)).cloned()
-    }
-
-    fn certified(&self, case: &Case) -> Option<Arc<Solved<1>>> {
-        Self::ground_key(case).and_then(|key| self.certified.get(&key)).cloned()
     }
 }
 
@@ -424,11 +431,11 @@ pub(super) fn prepare(
             if !matches!(quantity, Quantity::Radiance(..)) {
                 return Err("solved tables answer radiances".into());
             }
-            const NEEDED: &str = "solved tables need a round planet";
+            let pair = shared.solved(case).ok_or("solved tables need a round planet")?;
             if method == Method::Certified {
-                Tables::Certified(shared.certified(case).ok_or(NEEDED)?, shared.columns(case, shape, &medium))
+                Tables::Certified(pair, shared.columns(case, shape, &medium))
             } else {
-                Tables::Solved(shared.solved(case).ok_or(NEEDED)?)
+                Tables::Solved(pair)
             }
         }
     };

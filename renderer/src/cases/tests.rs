@@ -48,6 +48,28 @@ fn fluxes_of_an_absorbing_layer_are_closed_forms() {
 }
 
 #[test]
+fn certificates_answer_radiances_of_all_orders() {
+    let rest = r#""quantity": "radiance", "geometry": "spherical", "profile": "thin", "phase": [[1.0, "rayleigh", 0.0]], "observer": "ground", "observer_alt_km": 0.0"#;
+    let day = case("day", rest);
+    let dark = case("dark", rest).replace(r#""sza_deg": 60"#, r#""sza_deg": 150"#);
+    let single = case("single", rest).replace(r#""orders": "all""#, r#""orders": "1""#);
+    let plane = case("plane", &format!(r#""quantity": "radiance", {ABSORBER}"#));
+    let cases = [day.clone(), dark, single, plane].join(",");
+    let settings = Settings { tier: Tier::Full, method: Method::Certified, effort: Effort::Error(0.003), seed: 1 };
+    let report = run(&suite(&cases), &settings, &|_, _| {});
+    let why: Vec<_> = report.refusals.iter().map(|refusal| refusal.why.as_str()).collect();
+    assert_eq!(why, ["certificates are of all orders", "solved tables need a round planet"]);
+    let [found, none] = report.answers.as_slice() else { panic!("{:?}", report.answers) };
+    let paths = &answer(&day, Effort::Error(0.003)).answers[0];
+    let allowed = 5.0 * found.stderr.hypot(paths.stderr);
+    assert!((found.value - paths.value).abs() < allowed, "{} for {}", found.value, paths.value);
+    assert!(found.stderr <= 0.0031 * found.value, "error {} of {}", found.stderr, found.value);
+    // No relative error can be had of nothing: what is not resolved is the error.
+    assert!(none.value.abs() < 1e-9 && none.stderr >= 1e-9 && none.stderr < 1e-8, "{none:?}");
+    assert!(none.paths >= 2);
+}
+
+#[test]
 fn thin_single_scattering_is_the_optical_depth_times_the_phase_function() {
     // tau = 1e-4 (5 + 5) + ... = 7.5e-4 + 2.25e-3 of a trapezoid each, both transmittances within 1 % of 1.
     let rest = r#""quantity": "radiance", "geometry": "spherical", "profile": "thin", "phase": [[1.0, "rayleigh", 0.0]], "observer": "ground", "observer_alt_km": 0.0"#;
