@@ -1,6 +1,7 @@
 //! Arithmetic on arrays in forms that compilers turn into vector instructions.
 
 use pulp::NullaryFnOnce;
+use std::ops::{AddAssign, Mul};
 use std::sync::atomic::{AtomicU8, Ordering};
 
 /// Which vectors are taken.
@@ -41,9 +42,15 @@ pub(crate) fn vectorised<const L: usize, W: NullaryFnOnce>(work: W) -> W::Output
     pulp::Arch::new().dispatch(work)
 }
 
+/// Of single or double precision.
+pub(crate) trait Number: Copy + Mul<Output = Self> + AddAssign {}
+
+impl Number for f32 {}
+impl Number for f64 {}
+
 /// Adds products to a sum. (What is summed in place has to be copied: of arrays that might overlap no vectors are made.)
 #[inline(always)]
-pub(crate) fn add_product<const L: usize>(sum: &mut [f32; L], a: &[f32; L], b: &[f32; L]) {
+pub(crate) fn add_product<T: Number, const L: usize>(sum: &mut [T; L], a: &[T; L], b: &[T; L]) {
     let (mut total, a, b) = (*sum, *a, *b);
     for j in 0..L {
         total[j] += a[j] * b[j];
@@ -53,7 +60,7 @@ pub(crate) fn add_product<const L: usize>(sum: &mut [f32; L], a: &[f32; L], b: &
 
 /// Adds `factor` times a row to a sum.
 #[inline(always)]
-pub(crate) fn add_scaled<const L: usize>(sum: &mut [f32; L], factor: f32, row: &[f32; L]) {
+pub(crate) fn add_scaled<T: Number, const L: usize>(sum: &mut [T; L], factor: T, row: &[T; L]) {
     let (mut total, row) = (*sum, *row);
     for j in 0..L {
         total[j] += factor * row[j];

@@ -21,7 +21,7 @@ use super::line::MOST_SPECIES;
 use super::species::{Species, moments};
 use crate::atmosphere::{Medium, MediumError};
 use crate::geometry::{Place, Shape};
-use crate::vectors::{exp_minus, vectorised};
+use crate::vectors::{add_product, add_scaled, exp_minus, vectorised};
 use glam::DVec3;
 use pulp::NullaryFnOnce;
 use std::f64::consts::{FRAC_1_PI, PI};
@@ -54,6 +54,8 @@ pub(super) struct Aureole<const L: usize> {
 struct Peak<const L: usize> {
     /// f Q^(*n) in sr^-1 for n = 2 and further, by angle.
     folds: Vec<[[f64; L]; FOLDS]>,
+    /// What the table keeps of the phase function in sr^-1, (1 - f) P_M, as a sum over m of these times cos m Theta.
+    kept: Vec<[f64; L]>,
 }
 
 impl<const L: usize> Aureole<L> {
@@ -88,10 +90,12 @@ impl<const L: usize> Aureole<L> {
     #[inline(always)]
     pub(super) fn towards(&self, cosine: f64, depth: &[f64; L]) -> Widened<'_, L> {
         let cosine = cosine.clamp(-1.0, 1.0);
-        let mut legendre = [1.0; MOST_DEGREE + 1];
-        legendre[1] = cosine;
-        for l in 2..=self.degree {
-            legendre[l] = (2.0 - PER[l]) * cosine * legendre[l - 1] - (1.0 - PER[l]) * legendre[l - 2];
+        // cos 2m Theta = 2 cos^2 m Theta - 1 and its like, so that the chain of products is short.
+        let mut multiples = [1.0; MOST_DEGREE + 1];
+        multiples[1] = cosine;
+        for m in 2..=self.degree {
+            let (half, rest) = (multiples[m / 2], multiples[m - m / 2]);
+            multiples[m] = 2.0 * half * rest - multiples[m % 2];
         }
         let place = (cosine.acos() / PI).sqrt() * STEPS as f64;
         let below = (place as usize).min(STEPS - 1);
@@ -103,13 +107,13 @@ impl<const L: usize> Aureole<L> {
         }
         for n in 0..FOLDS {
             for j in 0..L {
-                term[j] *= depth[j].max(1e-6) * PER[n + 2];
+                term[j] *= depth[j].max(1e-6) * PER[n];
                 shares[n][j] = if n + 1 < FOLDS { term[j] } else { left[j] };
                 left[j] -= term[j];
             }
         }
         let lost = through.map(|through| through - 1.0);
-        Widened { aureole: self, legendre, below, share: place - below as f64, lost, shares }
+        Widened { aureole: self, multiples, below, share: place - below as f64, lost, shares }
     }
 
     /// Whether there are no peaks.
@@ -118,22 +122,14 @@ impl<const L: usize> Aureole<L> {
     }
 }
 
-/// 1 / l.
-const PER: [f64; MOST_DEGREE + 1] = {
-    let mut per = [1.0; MOST_DEGREE + 1];
-    let mut l = 2;
-    while l <= MOST_DEGREE {
-        per[l] = 1.0 / l as f64;
-        l += 1;
-    }
-    per
-};
+/// 1 / n for n = 2 and further.
+const PER: [f64; FOLDS] = [1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0, 1.0 / 5.0, 1.0 / 6.0];
 
 /// What a direction shows of the peaks of all species.
 pub(super) struct Widened<'a, const L: usize> {
     aureole: &'a Aureole<L>,
-    /// P_l of the cosine of the angle from the sun.
-    legendre: [f64; MOST_DEGREE + 1],
+    /// cos m Theta of the angle from the sun.
+    multiples: [f64; MOST_DEGREE + 1],
     /// Between which tabulated angles, and the share of the second.
     below: usize,
     share: f64,
@@ -146,18 +142,21 @@ pub(super) struct Widened<'a, const L: usize> {
 impl<const L: usize> Widened<'_, L> {
     /// What stands for the phase function of a species, given that itself, in sr^-1.
     #[inline(always)]
-    pub(super) fn widen(&self, index: usize, species: &Species<L>, phase: [f64; L]) -> [f64; L] {
+    pub(super) fn widen(&self, index: usize, phase: [f64; L]) -> [f64; L] {
         let mut phase = phase;
         let Some(peak) = &self.aureole.peaks[index] else { return phase };
-        let kept = species.kept(&self.legendre);
+        let mut kept = [0.0; L];
+        for (cosine, row) in self.multiples.iter().zip(&peak.kept) {
+            add_scaled(&mut kept, *cosine, row);
+        }
         let (a, b) = (&peak.folds[self.below], &peak.folds[self.below + 1]);
         for j in 0..L {
             phase[j] += self.lost[j] * (phase[j] - kept[j]);
         }
-        for (n, shares) in self.shares.iter().enumerate() {
-            for j in 0..L {
-                phase[j] += shares[j] * (a[n][j] + self.share * (b[n][j] - a[n][j]));
-            }
+        for (shares, (a, b)) in self.shares.iter().zip(a.iter().zip(b)) {
+            let mut fold = a.map(|one| one * (1.0 - self.share));
+            add_scaled(&mut fold, self.share, b);
+            add_product(&mut phase, shares, &fold);
         }
         phase
     }
@@ -177,8 +176,27 @@ impl<const L: usize> Peak<L> {
                 })
                 .collect();
         let folds = vectorised::<L, _>(Convolutions { peak: &peak, straight });
-        Self { folds }
+        Self { folds, kept: multiples(species) }
     }
+}
+
+/// sum (1 - f) b_l P_l(cos Theta) of a species as a sum over m of factors of cos m Theta:
+/// P_l(cos Theta) = sum_(k = 0)^l g_k g_(l - k) cos (l - 2k) Theta with g_k = (2k)! / (2^k k!)^2 (Abramowitz & Stegun, 22.3.13).
+fn multiples<const L: usize>(species: &Species<L>) -> Vec<[f64; L]> {
+    let mut factors = vec![[0.0; L]; species.coefficients.len()];
+    let mut g = vec![1.0];
+    for k in 1..factors.len() {
+        g.push(g[k - 1] * (2 * k - 1) as f64 / (2 * k) as f64);
+    }
+    for (l, row) in species.coefficients.iter().enumerate() {
+        for k in 0..=l {
+            let factor = &mut factors[l.abs_diff(2 * k)];
+            for j in 0..L {
+                factor[j] += g[k] * g[l - k] * row[j] / species.whole[j];
+            }
+        }
+    }
+    factors
 }
 
 /// f Q^(*n) from the moments of Q, as work for vectors.

@@ -3,6 +3,7 @@
 use super::Solved;
 use super::line::MOST_SPECIES;
 use super::view::Seen;
+use crate::vectors::add_scaled;
 use pulp::NullaryFnOnce;
 
 /// Nodes of a polynomial.
@@ -13,26 +14,41 @@ const NODES: usize = 6;
 pub(super) struct Nodes<const L: usize> {
     pub(super) rings: usize,
     pub(super) azimuths: usize,
-    /// [ring][azimuth][`rows`]: what is seen.
+    /// [ring][azimuth][`rows`]: what is seen. Without polarisation: the light that is smooth in the direction; the depth of peaks and what
+    /// each species of particles scatters once. With it: the rest; peaks; what each species scatters once, as it counts for I and for
+    /// Q and U; Q and U.
     values: Vec<[f32; L]>,
     rows: usize,
-    species: usize,
+    /// Which species have rows.
+    species: Vec<usize>,
 }
 
 impl<const L: usize> Nodes<L> {
-    /// Of looks: rings, and on each as many azimuths from the sun's to its opposite.
-    pub(super) fn new<'a>(rings: impl Iterator<Item = impl Iterator<Item = &'a Seen<L>>>, solved: &Solved<L>) -> Self {
-        let species = solved.optics.species.len();
+    /// Of looks: rings, and on each as many azimuths from the sun's to its opposite; each with the cosine of the angle from the sun.
+    pub(super) fn new<'a>(
+        rings: impl Iterator<Item = impl Iterator<Item = (f64, &'a Seen<L>)>>,
+        solved: &Solved<L>,
+    ) -> Self {
         let polarised = solved.is_polarised();
-        let rows = if polarised { 4 + 2 * species } else { 2 + species };
+        let all = solved.optics.species.iter().enumerate();
+        let species: Vec<_> =
+            all.filter(|(_, one)| polarised || !one.is_molecular()).map(|(index, _)| index).collect();
+        let rows = match species.len() {
+            count if polarised => 4 + 2 * count,
+            0 => 1,
+            count => 2 + count,
+        };
         let single = |row: &[f64; L]| row.map(|value| value as f32);
         let (mut values, mut count) = (Vec::new(), 0);
         for ring in rings {
-            for seen in ring {
-                values.extend([single(&seen.rest), single(&seen.peaks)]);
-                values.extend(seen.once[..species].iter().map(single));
+            for (towards, seen) in ring {
+                values.push(if polarised { single(&seen.rest) } else { single(&solved.smooth(seen, towards)) });
+                if rows > 1 {
+                    values.push(single(&seen.peaks));
+                }
+                values.extend(species.iter().map(|&index| single(&seen.once[index])));
                 if polarised {
-                    values.extend(seen.turned[..species].iter().map(single));
+                    values.extend(species.iter().map(|&index| single(&seen.turned[index])));
                     values.extend(seen.linear.iter().map(single));
                 }
             }
@@ -94,11 +110,19 @@ impl<const L: usize> NullaryFnOnce for Glance<'_, L> {
 
     #[inline(always)]
     fn call(self) -> [f64; L] {
-        self.solved.shade(&self.nodes.seen(self.at), self.towards, false)
+        let Self { solved, nodes, at, towards } = self;
+        if solved.is_polarised() {
+            return solved.shade(&nodes.seen(at), towards, false);
+        }
+        let [smooth, peaks, once @ ..] = nodes.rows::<{ 2 + MOST_SPECIES }>(at);
+        if nodes.species.is_empty() {
+            return smooth;
+        }
+        solved.with_particles(&smooth, (&peaks, &nodes.of_species(&once)), towards, false)
     }
 }
 
-/// What nodes say of a direction, before the phase functions.
+/// What nodes of polarised light say of a direction, before the phase functions.
 pub(super) struct Interpolation<'a, const L: usize>(pub(super) &'a Nodes<L>, pub(super) [f64; 2]);
 
 impl<const L: usize> NullaryFnOnce for Interpolation<'_, L> {
@@ -111,8 +135,28 @@ impl<const L: usize> NullaryFnOnce for Interpolation<'_, L> {
 }
 
 impl<const L: usize> Nodes<L> {
+    /// Of polarised light.
     #[inline(always)]
-    fn seen(&self, [ring, azimuth]: [f64; 2]) -> Seen<L> {
+    fn seen(&self, at: [f64; 2]) -> Seen<L> {
+        let [rest, peaks, others @ ..] = self.rows::<{ 4 + 2 * MOST_SPECIES }>(at);
+        let (once, others) = others.split_at(self.species.len());
+        let (turned, linear) = others.split_at(self.species.len());
+        Seen { rest, peaks, once: self.of_species(once), turned: self.of_species(turned), linear: [linear[0], linear[1]] }
+    }
+
+    /// Rows of the species that have one, zero of others.
+    #[inline(always)]
+    fn of_species(&self, rows: &[[f64; L]]) -> [[f64; L]; MOST_SPECIES] {
+        let mut all = [[0.0; L]; MOST_SPECIES];
+        for (row, &index) in rows.iter().zip(&self.species) {
+            all[index] = *row;
+        }
+        all
+    }
+
+    /// The first `N` rows at a place, zero where there are fewer.
+    #[inline(always)]
+    fn rows<const N: usize>(&self, [ring, azimuth]: [f64; 2]) -> [[f64; L]; N] {
         let (along, across) = (inside(self.rings, ring), mirrored(self.azimuths, azimuth));
         let (mut places, mut even, mut odd) = ([0; NODES * NODES], [0.0; NODES * NODES], [0.0; NODES * NODES]);
         for i in 0..NODES {
@@ -123,30 +167,42 @@ impl<const L: usize> Nodes<L> {
                 odd[i * NODES + k] = (a * c) as f32;
             }
         }
-        let mut values = [[0.0_f32; L]; 2 * MOST_SPECIES + 4];
-        let last = 3 + 2 * self.species;
-        for (row, value) in values.iter_mut().enumerate().take(self.rows) {
-            // The last row is U.
-            let weights = if row == last { &odd } else { &even };
-            // Two sums, so that neither waits for itself.
-            let (mut first, mut second) = ([0.0_f32; L], [0.0_f32; L]);
-            for k in 0..NODES * NODES / 2 {
-                let (a, b) = (&self.values[places[2 * k] + row], &self.values[places[2 * k + 1] + row]);
-                for j in 0..L {
-                    first[j] += weights[2 * k] * a[j];
-                }
-                for j in 0..L {
-                    second[j] += weights[2 * k + 1] * b[j];
-                }
-            }
-            for j in 0..L {
-                value[j] = first[j] + second[j];
+        let mut rows = [[0.0; L]; N];
+        // The last row of polarised light is U.
+        let even_rows = self.rows - usize::from(self.is_polarised());
+        let mut row = 0;
+        while row + 4 <= even_rows {
+            let sums: [_; 4] = self.sums(row, &places, &even);
+            rows[row..row + 4].copy_from_slice(&sums);
+            row += 4;
+        }
+        while row < self.rows {
+            let weights = if row < even_rows { &even } else { &odd };
+            [rows[row]] = self.sums(row, &places, weights);
+            row += 1;
+        }
+        rows
+    }
+
+    /// Of the rows from one on, the sums over nodes, which begin at these places.
+    #[inline(always)]
+    fn sums<const N: usize>(
+        &self,
+        first: usize,
+        places: &[usize; NODES * NODES],
+        weights: &[f32; NODES * NODES],
+    ) -> [[f64; L]; N] {
+        let mut sums = [[0.0_f32; L]; N];
+        for k in 0..NODES * NODES {
+            let rows = &self.values[places[k] + first..][..N];
+            for i in 0..N {
+                add_scaled(&mut sums[i], weights[k], &rows[i]);
             }
         }
-        let [rest, peaks, others @ ..] = values.map(|row| row.map(f64::from));
-        let (mut once, mut turned) = ([[0.0; L]; MOST_SPECIES], [[0.0; L]; MOST_SPECIES]);
-        once[..self.species].copy_from_slice(&others[..self.species]);
-        turned[..self.species].copy_from_slice(&others[self.species..2 * self.species]);
-        Seen { rest, peaks, once, turned, linear: [others[2 * self.species], others[2 * self.species + 1]] }
+        sums.map(|row| row.map(f64::from))
+    }
+
+    fn is_polarised(&self) -> bool {
+        self.rows > 2 + self.species.len()
     }
 }

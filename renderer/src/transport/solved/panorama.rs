@@ -330,7 +330,8 @@ impl<const L: usize> Survey<'_, L> {
     }
 
     fn nodes(&self, rings: &[Vec<Looked<L>>]) -> Nodes<L> {
-        Nodes::new(rings.iter().map(|ring| ring.iter().map(|(_, seen)| seen)), self.solved)
+        let sun = self.all.sun;
+        Nodes::new(rings.iter().map(|ring| ring.iter().map(|(direction, seen)| (direction.dot(sun), seen))), self.solved)
     }
 
     /// Whether nodes show what is seen, to so many times the asked error.

@@ -8,7 +8,7 @@ use super::view::Seen;
 use super::{Reach, Solved};
 use crate::atmosphere::{Chord, Columns};
 use crate::geometry::Place;
-use crate::vectors::exp_minus;
+use crate::vectors::{add_product, exp_minus};
 use glam::DVec3;
 use pulp::NullaryFnOnce;
 use std::cell::RefCell;
@@ -218,7 +218,7 @@ impl<'a, const L: usize> Sight<'a, L> {
             let r = solved.grid.level_radius(place.level);
             let there = (lit.position(place.s).dot(sun) / r).clamp(-1.0, 1.0);
             let source = solved.gathered(&[(place.level, 1.0)], [self.zenith(place), there, towards], *reach, rows);
-            add(&mut seen.rest, &source.map(f64::from), &[1.0; L]);
+            add_product(&mut seen.rest, &source.map(f64::from), &[1.0; L]);
         }
         for (place, weights) in &self.dipoles {
             lit.add_linear(place, weights, &mut seen.linear);
@@ -296,31 +296,21 @@ impl<const L: usize> Taker<'_, L> {
         let mut depth = [0.0; L];
         if let (Some(peaks), Some(before)) = (&sight.peaks, before) {
             depth = peaks.after(at, sun);
-            add(&mut depth, before, &[1.0; L]);
+            add_product(&mut depth, before, &[1.0; L]);
         }
         let more = sight.ahead.as_ref().map(|ahead| ahead.more(s));
         let once = self.seen.once.iter_mut().zip(&mut self.seen.turned);
         for (((once, turned), scattered), one) in once.zip(scattered).zip(&sight.solved.optics.species) {
             let arrives: [f64; L] = std::array::from_fn(|j| scattered[j] * sunlight[j]);
-            add(once, &arrives, &[1.0; L]);
+            add_product(once, &arrives, &[1.0; L]);
             if let Some(more) = &more {
-                add(turned, &arrives, more);
+                add_product(turned, &arrives, more);
             }
             if before.is_some() && !one.is_molecular() {
-                add(&mut self.seen.peaks, &arrives, &depth);
+                add_product(&mut self.seen.peaks, &arrives, &depth);
             }
         }
     }
-}
-
-/// Adds products to a sum, which is copied for the reason that [`add_product`](crate::vectors::add_product) has.
-#[inline(always)]
-fn add<const L: usize>(sum: &mut [f64; L], a: &[f64; L], b: &[f64; L]) {
-    let mut total = *sum;
-    for j in 0..L {
-        total[j] += a[j] * b[j];
-    }
-    *sum = total;
 }
 
 /// Cosine of the sun's zenith angle below which its light may change fast along a line.

@@ -4,7 +4,6 @@
 //! than the table keeps, the share f = chi_(degree + 1) is taken for light that goes straight on (the delta-M method,
 //! Wiscombe 1977): chi'_l = (chi_l - f) / (1 - f), and of the scattering cross-section 1 - f is left.
 
-use super::harmonics::MOST_DEGREE;
 use crate::atmosphere::{Component, GAUSS_4, Medium, MediumError};
 use crate::phase::{Phase, Tabulated};
 use crate::vectors::vectorised;
@@ -35,18 +34,6 @@ impl<const L: usize> Species<L> {
     /// f, the share of scattered light that goes straight on.
     pub(super) fn straight(&self) -> [f64; L] {
         self.whole.map(|whole| 1.0 - 1.0 / whole)
-    }
-
-    /// What the coefficients hold of the phase function: sum (1 - f) b_l P_l(c), in sr^-1, with Legendre's polynomials P_l(c).
-    #[inline(always)]
-    pub(super) fn kept(&self, legendre: &[f64; MOST_DEGREE + 1]) -> [f64; L] {
-        let mut sum = [0.0; L];
-        for (legendre, coefficients) in legendre.iter().zip(&self.coefficients) {
-            for j in 0..L {
-                sum[j] += legendre * coefficients[j];
-            }
-        }
-        std::array::from_fn(|j| sum[j] / self.whole[j])
     }
 }
 

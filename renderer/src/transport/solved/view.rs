@@ -9,7 +9,7 @@ use crate::atmosphere::Columns;
 use crate::geometry::Place;
 use crate::light::SunDisc;
 use crate::polarisation::{Analyser, Frame, Natural, Stokes};
-use crate::vectors::vectorised;
+use crate::vectors::{add_product, vectorised};
 use glam::DVec3;
 use pulp::NullaryFnOnce;
 
@@ -94,29 +94,57 @@ impl<const L: usize> Solved<L> {
     /// Radiance of what is seen at an angle from the sun with this cosine.
     #[inline(always)]
     pub(super) fn shade(&self, seen: &Seen<L>, towards: f64, single: bool) -> [f64; L] {
+        self.with_particles(&self.smooth(seen, towards), (&seen.peaks, &seen.once), towards, single)
+    }
+
+    /// The part of it that is smooth in the direction: all but sunlight scattered once by particles.
+    #[inline(always)]
+    pub(super) fn smooth(&self, seen: &Seen<L>, towards: f64) -> [f64; L] {
+        let mut sum = seen.rest;
+        for (one, once) in self.optics.species.iter().zip(&seen.once).filter(|(one, _)| one.is_molecular()) {
+            let mut phase = one.phase.values(towards);
+            for j in 0..L {
+                phase[j] *= one.whole[j];
+            }
+            add_product(&mut sum, &phase, once);
+        }
+        sum
+    }
+
+    /// That and the rest: of [`Seen`] the depth of peaks, and what each species scatters once.
+    #[inline(always)]
+    pub(super) fn with_particles(
+        &self,
+        smooth: &[f64; L],
+        (peaked, once): (&[f64; L], &[[f64; L]; MOST_SPECIES]),
+        towards: f64,
+        single: bool,
+    ) -> [f64; L] {
         let Optics { species, aureole, .. } = &*self.optics;
         let mut peaks = None;
         if !single && !aureole.is_none() {
             let mut depth = [0.0; L];
             let mut whole = [0.0; L];
-            for (_, once) in species.iter().zip(&seen.once).filter(|(one, _)| !one.is_molecular()) {
-                for j in 0..L {
-                    whole[j] += once[j];
-                }
+            for (_, once) in species.iter().zip(once).filter(|(one, _)| !one.is_molecular()) {
+                add_product(&mut whole, once, &[1.0; L]);
             }
             for j in 0..L {
                 // Between looks in the dark a polynomial may have a little of one without the other.
-                depth[j] = if whole[j] > 0.0 { (seen.peaks[j] / whole[j]).max(0.0) } else { 0.0 };
+                depth[j] = if whole[j] > 0.0 { (peaked[j] / whole[j]).max(0.0) } else { 0.0 };
             }
             peaks = Some(aureole.towards(towards, &depth));
         }
-        let mut sum = seen.rest;
-        for (i, (one, once)) in species.iter().zip(&seen.once).enumerate() {
-            let phase = one.phase.values(towards);
-            let phase = peaks.as_ref().map_or(phase, |peaks| peaks.widen(i, one, phase));
-            for j in 0..L {
-                sum[j] += phase[j] * one.whole[j] * once[j];
+        let mut sum = *smooth;
+        for (i, (one, once)) in species.iter().zip(once).enumerate().filter(|(_, (one, _))| !one.is_molecular()) {
+            let mut phase = one.phase.values(towards);
+            // (No closure, since those are not always inlined.)
+            if let Some(peaks) = &peaks {
+                phase = peaks.widen(i, phase);
             }
+            for j in 0..L {
+                phase[j] *= one.whole[j];
+            }
+            add_product(&mut sum, &phase, once);
         }
         sum
     }
