@@ -17,16 +17,22 @@ const fn solved(fineness: Fineness, polarised: bool) -> Transfer {
     Transfer { fineness: Some(fineness), polarised }
 }
 
-/// All ways: the isotropic closure, and tables of four grids, without and with polarisation.
-pub const TRANSFERS: [Transfer; 9] = [
+/// All ways: the isotropic closure, and tables of seven grids, without and with polarisation.
+pub const TRANSFERS: [Transfer; 15] = [
     Transfer { fineness: None, polarised: false },
     solved(Fineness::Coarse, false),
+    solved(Fineness::Light, false),
     solved(Fineness::Usual, false),
     solved(Fineness::Middle, false),
+    solved(Fineness::Good, false),
+    solved(Fineness::Better, false),
     solved(Fineness::Fine, false),
     solved(Fineness::Coarse, true),
+    solved(Fineness::Light, true),
     solved(Fineness::Usual, true),
     solved(Fineness::Middle, true),
+    solved(Fineness::Good, true),
+    solved(Fineness::Better, true),
     solved(Fineness::Fine, true),
 ];
 

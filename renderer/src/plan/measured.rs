@@ -9,7 +9,7 @@ use tables::views::Biome;
 pub struct Costs {
     /// Of each of [`TRANSFERS`] at eight wavelengths: what is made once for an atmosphere, and a look in one direction.
     pub solve_look_s: [[f64; 2]; TRANSFERS.len()],
-    /// Of four and of thirty-one wavelengths over eight: what is made once, and a look; of usual tables.
+    /// Of four and of thirty-one wavelengths over eight: what is made once, and a look; of coarse tables.
     pub lanes: [[f64; 2]; 2],
     /// Looks that all directions of a picture are found from, and what one of them takes of a look.
     pub panorama: [f64; 2],

@@ -26,7 +26,7 @@ const CASES: [(&str, f64); 4] = [
 const ERRORS: [f64; 3] = [10.0, 1.0, 0.1];
 
 /// Grids of tables, from the coarsest.
-const GRIDS: [Fineness; 4] = [Fineness::Coarse, Fineness::Usual, Fineness::Middle, Fineness::Fine];
+const GRIDS: [Fineness; 5] = [Fineness::Coarse, Fineness::Usual, Fineness::Middle, Fineness::Better, Fineness::Fine];
 
 /// Error of a picture beside its table's.
 const SHOWN: f64 = 5e-4;

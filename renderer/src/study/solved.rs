@@ -7,7 +7,7 @@ use crate::data::Data;
 use crate::geometry::{Place, Shape};
 use crate::render::{RenderError, certify_table};
 use crate::sampling::spiral;
-use crate::transport::{Resolution, Solved, Tables};
+use crate::transport::{Fineness, Resolution, Solved, Tables};
 use glam::DVec3;
 use std::time::Instant;
 use tables::units::EARTH_RADIUS_M;
@@ -143,8 +143,8 @@ const VARIED: [(&str, Vary); 6] = [
 /// Panels, and zenith angles of the sun in degrees.
 const SEEN: [(&str, f64); 3] = [("sun at 30 degrees", 60.0), ("sun at 0 degrees", 90.0), ("sun at -5 degrees", 95.0)];
 
-/// Error against cost: one part of the resolution at a time coarser or finer than the renderer's, in desert dust, against a table that
-/// is finer in everything. On one thread.
+/// Error against cost: one part of the resolution at a time coarser or finer than the renderer's, and the grids that have names, in desert dust,
+/// against a table that is finer in everything. On one thread.
 ///
 /// # Errors
 /// [`RenderError`] if the data do not have what it takes.
@@ -153,17 +153,17 @@ pub fn grids(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rend
     let best = Resolution { levels: 32, suns: 64, zeniths: [12, 7, 9], parts: 16, degree: 24, change: 2e-5 };
     let reference = Solved::new(&medium, SHAPE, ALBEDO, &best)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let named = Fineness::ALL.into_iter().filter(|grid| *grid != Fineness::Finest);
+    let varied = VARIED.iter().flat_map(|(name, vary)| (0..4).map(|i| (*name, vary(Resolution::RENDER, i))));
+    let all: Vec<_> = varied.chain(named.map(|grid| ("grids by name", grid.resolution()))).collect();
     let mut rows = Vec::new();
-    for (k, (name, vary)) in VARIED.iter().enumerate() {
-        for i in 0..4 {
-            let resolution = vary(Resolution::RENDER, i);
-            let start = Instant::now();
-            let solved = pool.install(|| Solved::new(&medium, SHAPE, ALBEDO, &resolution))?;
-            let seconds = start.elapsed().as_secs_f64();
-            let off = SEEN.map(|(_, zenith)| solved.difference(&reference, Place::above(EYE_M), towards(zenith, 0.0)));
-            rows.push((*name, seconds, off));
-            progress((k as f64 + (i + 1) as f64 / 4.0) / VARIED.len() as f64);
-        }
+    for (name, resolution) in &all {
+        let start = Instant::now();
+        let solved = pool.install(|| Solved::new(&medium, SHAPE, ALBEDO, resolution))?;
+        let seconds = start.elapsed().as_secs_f64();
+        let off = SEEN.map(|(_, zenith)| solved.difference(&reference, Place::above(EYE_M), towards(zenith, 0.0)));
+        rows.push((*name, seconds, off));
+        progress(rows.len() as f64 / all.len() as f64);
     }
     let point = |panel, k: usize| {
         rows.iter().map(move |&(name, seconds, off)| Point {

@@ -2,8 +2,8 @@
 //!
 //! Transfers are compared at eight wavelengths ([`NODES`]), since what a grid is off varies slowly with wavelength; the spectrum between them is that of
 //! coarse tables at 31. With U(lambda) the latter and G(lambda_k) another transfer at the eight, G(lambda) = U(lambda) r(lambda) with r the cubic through
-//! G / U at the eight. The truth is T, of the finest polarised tables. What polarisation changes hardly depends on the grid: of the two finer grids only
-//! polarised tables are solved, and radiances, times and looks without it follow by the ratios of usual tables.
+//! G / U at the eight. The truth is T, of the finest polarised tables. What polarisation changes hardly depends on the grid: of all but the two coarsest grids
+//! only polarised tables are solved, and radiances, times and looks without it follow by the ratios of light tables.
 
 use super::scenes::Set;
 use crate::clock::thread_s;
@@ -135,6 +135,9 @@ const PATHS: u32 = 8;
 const SIDE: u32 = 256;
 const STEP: usize = 4;
 
+/// Tables that are made for an atmosphere.
+const SOLUTIONS: f64 = 13.0;
+
 /// Measures the scenes of an atmosphere.
 pub(super) fn measure(
     data: &Data,
@@ -154,7 +157,7 @@ pub(super) fn measure(
     let mut made = |transfer, wavelengths: &Wavelengths| {
         let made = at(transfer, wavelengths);
         done += 1.0;
-        step(done / 10.0);
+        step(done / SOLUTIONS);
         made
     };
     let mut truth = made(table(Fineness::Finest, true), &eight)?;
@@ -162,7 +165,7 @@ pub(super) fn measure(
     let mut four = made(table(Fineness::Coarse, false), &Spectrum::Seen4.wavelengths())?;
     let mut transfers = Vec::new();
     for one in TRANSFERS {
-        let follows = !one.polarised && matches!(one.fineness, Some(Fineness::Middle | Fineness::Fine));
+        let follows = !one.polarised && !matches!(one.fineness, None | Some(Fineness::Coarse | Fineness::Light));
         transfers.push(if follows { None } else { Some(made(one, &eight)?) });
     }
     let mut paths = Turned::new(data, &paths)?;
@@ -182,11 +185,11 @@ pub(super) fn measure(
                 }
             });
         }
-        let usual = [false, true].map(|polarised| looked[table(Fineness::Usual, polarised).index()].clone());
+        let light = [false, true].map(|polarised| looked[table(Fineness::Light, polarised).index()].clone());
         let (mut errors, mut solve_look_s) = (Vec::new(), [[0.0; 2]; TRANSFERS.len()]);
         for (i, one) in TRANSFERS.into_iter().enumerate() {
             let polarised = Transfer { polarised: true, ..one }.index();
-            let (seen, times) = match (&looked[i], &looked[polarised], &usual) {
+            let (seen, times) = match (&looked[i], &looked[polarised], &light) {
                 (Some(own), ..) => own.clone(),
                 (None, Some(with), [Some(scalar), Some(vector)]) => without(with, scalar, vector),
                 _ => return Err(RenderError::Measured("tables without polarisation have none with it".into())),
@@ -196,9 +199,9 @@ pub(super) fn measure(
             errors.extend((0..Spectrum::ALL.len()).map(|spectrum| eyes.errors(&right, &seen, spectrum)));
         }
         let [coarse_solve_s, coarse_look_s] = solve_look_s[table(Fineness::Coarse, false).index()];
-        let usual = table(Fineness::Usual, false).index();
-        let looks = match &mut transfers[usual] {
-            Some(one) => panorama(one, scene, solve_look_s[usual][1])?,
+        let light = table(Fineness::Light, false).index();
+        let looks = match &mut transfers[light] {
+            Some(one) => panorama(one, scene, solve_look_s[light][1])?,
             None => [0.0; 2],
         };
         let costs = Costs {
@@ -218,7 +221,7 @@ pub(super) fn measure(
     Ok(rows)
 }
 
-/// What a table with polarisation would see and take without it, by two usual ones.
+/// What a table with polarisation would see and take without it, by two light ones.
 fn without(
     (seen, times): &(Factors, [f64; 2]),
     (scalar, scalar_times): &(Factors, [f64; 2]),

@@ -21,16 +21,22 @@ pub struct Resolution {
     pub change: f64,
 }
 
-/// A resolution by name: each takes two to three times as long as the one before.
+/// A resolution by name: each takes one and a half times to twice as long as the one before, the last three times.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fineness {
     /// What tells how exact the usual grid is
     Coarse,
+    /// With more directions and moments than the coarse one
+    Light,
     /// What pictures take
     Usual,
-    /// Half-way to the fine one
+    /// With all moments
     Middle,
+    /// With more levels and directions than the middle one
+    Good,
+    /// With more levels and suns than the good one
+    Better,
     /// What reference cases take
     Fine,
     /// What the others are judged by
@@ -39,15 +45,19 @@ pub enum Fineness {
 
 impl Fineness {
     /// All of them, from the coarsest.
-    pub const ALL: [Self; 5] = [Self::Coarse, Self::Usual, Self::Middle, Self::Fine, Self::Finest];
+    pub const ALL: [Self; 8] =
+        [Self::Coarse, Self::Light, Self::Usual, Self::Middle, Self::Good, Self::Better, Self::Fine, Self::Finest];
 
     /// Its resolution.
     #[must_use]
     pub fn resolution(self) -> Resolution {
         match self {
             Self::Coarse => Resolution::COARSE,
+            Self::Light => Resolution::LIGHT,
             Self::Usual => Resolution::RENDER,
             Self::Middle => Resolution::MIDDLE,
+            Self::Good => Resolution::GOOD,
+            Self::Better => Resolution::BETTER,
             Self::Fine => Resolution::FINE,
             Self::Finest => Resolution::FINEST,
         }
@@ -58,8 +68,11 @@ impl Fineness {
     pub fn name(self) -> &'static str {
         match self {
             Self::Coarse => "coarse",
+            Self::Light => "light",
             Self::Usual => "usual",
             Self::Middle => "middle",
+            Self::Good => "good",
+            Self::Better => "better",
             Self::Fine => "fine",
             Self::Finest => "finest",
         }

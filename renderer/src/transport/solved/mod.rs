@@ -182,8 +182,18 @@ impl Resolution {
     /// A coarser one, whose distance from [`Resolution::RENDER`] tells how far that is from the truth.
     pub const COARSE: Self = Self { levels: 12, suns: 30, zeniths: [4, 3, 3], parts: 4, degree: 14, change: 5e-4 };
 
-    /// Between [`Resolution::RENDER`] and [`Resolution::FINE`].
-    pub const MIDDLE: Self = Self { levels: 24, suns: 44, zeniths: [8, 4, 6], parts: 6, degree: 17, change: 3e-4 };
+    /// Twice as exact with aerosol as [`Resolution::COARSE`]: of a grid, directions and moments cost least for what they gain, then steps, suns, levels
+    /// (`airlight study solved-grids`).
+    pub const LIGHT: Self = Self { levels: 12, suns: 30, zeniths: [7, 4, 5], parts: 6, degree: 20, change: 5e-4 };
+
+    /// With all moments, and more of the rest.
+    pub const MIDDLE: Self = Self { levels: 14, suns: 36, zeniths: [8, 4, 6], parts: 8, degree: 24, change: 3e-4 };
+
+    /// With the directions of [`Resolution::FINE`].
+    pub const GOOD: Self = Self { levels: 18, suns: 36, zeniths: [10, 6, 8], parts: 8, degree: 24, change: 2e-4 };
+
+    /// With its suns, too.
+    pub const BETTER: Self = Self { levels: 24, suns: 48, zeniths: [10, 6, 8], parts: 8, degree: 24, change: 2e-4 };
 
     /// Finer than [`Resolution::FINE`] in everything: what the others are judged by.
     pub const FINEST: Self = Self { levels: 40, suns: 64, zeniths: [12, 7, 9], parts: 12, degree: 24, change: 1e-4 };

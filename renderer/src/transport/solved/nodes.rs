@@ -31,8 +31,7 @@ impl<const L: usize> Nodes<L> {
     ) -> Self {
         let polarised = solved.is_polarised();
         let all = solved.optics.species.iter().enumerate();
-        let species: Vec<_> =
-            all.filter(|(_, one)| polarised || !one.is_molecular()).map(|(index, _)| index).collect();
+        let species: Vec<_> = all.filter(|(_, one)| polarised || !one.is_molecular()).map(|(index, _)| index).collect();
         let rows = match species.len() {
             count if polarised => 4 + 2 * count,
             0 => 1,
@@ -42,7 +41,11 @@ impl<const L: usize> Nodes<L> {
         let (mut values, mut count) = (Vec::new(), 0);
         for ring in rings {
             for (towards, seen) in ring {
-                values.push(if polarised { single(&seen.rest) } else { single(&solved.smooth(seen, towards)) });
+                values.push(if polarised {
+                    single(&seen.rest)
+                } else {
+                    single(&solved.smooth((&seen.rest, &seen.once), towards))
+                });
                 if rows > 1 {
                     values.push(single(&seen.peaks));
                 }
@@ -111,14 +114,16 @@ impl<const L: usize> NullaryFnOnce for Glance<'_, L> {
     #[inline(always)]
     fn call(self) -> [f64; L] {
         let Self { solved, nodes, at, towards } = self;
-        if solved.is_polarised() {
-            return solved.shade(&nodes.seen(at), towards, false);
-        }
-        let [smooth, peaks, once @ ..] = nodes.rows::<{ 2 + MOST_SPECIES }>(at);
+        let count = if nodes.species.is_empty() { 1 } else { 2 + nodes.species.len() };
+        let [mut smooth, peaks, once @ ..] = nodes.rows::<{ 2 + MOST_SPECIES }>(at, count);
         if nodes.species.is_empty() {
             return smooth;
         }
-        solved.with_particles(&smooth, (&peaks, &nodes.of_species(&once)), towards, false)
+        let once = nodes.of_species(&once);
+        if nodes.is_polarised() {
+            smooth = solved.smooth((&smooth, &once), towards);
+        }
+        solved.with_particles(&smooth, (&peaks, &once), towards, false)
     }
 }
 
@@ -138,10 +143,16 @@ impl<const L: usize> Nodes<L> {
     /// Of polarised light.
     #[inline(always)]
     fn seen(&self, at: [f64; 2]) -> Seen<L> {
-        let [rest, peaks, others @ ..] = self.rows::<{ 4 + 2 * MOST_SPECIES }>(at);
+        let [rest, peaks, others @ ..] = self.rows::<{ 4 + 2 * MOST_SPECIES }>(at, self.rows);
         let (once, others) = others.split_at(self.species.len());
         let (turned, linear) = others.split_at(self.species.len());
-        Seen { rest, peaks, once: self.of_species(once), turned: self.of_species(turned), linear: [linear[0], linear[1]] }
+        Seen {
+            rest,
+            peaks,
+            once: self.of_species(once),
+            turned: self.of_species(turned),
+            linear: [linear[0], linear[1]],
+        }
     }
 
     /// Rows of the species that have one, zero of others.
@@ -154,9 +165,9 @@ impl<const L: usize> Nodes<L> {
         all
     }
 
-    /// The first `N` rows at a place, zero where there are fewer.
+    /// The first `count` rows at a place, and zeros.
     #[inline(always)]
-    fn rows<const N: usize>(&self, [ring, azimuth]: [f64; 2]) -> [[f64; L]; N] {
+    fn rows<const N: usize>(&self, [ring, azimuth]: [f64; 2], count: usize) -> [[f64; L]; N] {
         let (along, across) = (inside(self.rings, ring), mirrored(self.azimuths, azimuth));
         let (mut places, mut even, mut odd) = ([0; NODES * NODES], [0.0; NODES * NODES], [0.0; NODES * NODES]);
         for i in 0..NODES {
@@ -169,14 +180,14 @@ impl<const L: usize> Nodes<L> {
         }
         let mut rows = [[0.0; L]; N];
         // The last row of polarised light is U.
-        let even_rows = self.rows - usize::from(self.is_polarised());
+        let even_rows = if self.is_polarised() { count.min(self.rows - 1) } else { count };
         let mut row = 0;
         while row + 4 <= even_rows {
             let sums: [_; 4] = self.sums(row, &places, &even);
             rows[row..row + 4].copy_from_slice(&sums);
             row += 4;
         }
-        while row < self.rows {
+        while row < count {
             let weights = if row < even_rows { &even } else { &odd };
             [rows[row]] = self.sums(row, &places, weights);
             row += 1;

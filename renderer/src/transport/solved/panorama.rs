@@ -331,7 +331,10 @@ impl<const L: usize> Survey<'_, L> {
 
     fn nodes(&self, rings: &[Vec<Looked<L>>]) -> Nodes<L> {
         let sun = self.all.sun;
-        Nodes::new(rings.iter().map(|ring| ring.iter().map(|(direction, seen)| (direction.dot(sun), seen))), self.solved)
+        Nodes::new(
+            rings.iter().map(|ring| ring.iter().map(|(direction, seen)| (direction.dot(sun), seen))),
+            self.solved,
+        )
     }
 
     /// Whether nodes show what is seen, to so many times the asked error.

@@ -278,6 +278,34 @@ fn layers_that_end_sharply_need_no_more_levels() {
 }
 
 #[test]
+fn the_asked_error_chooses_the_grid() {
+    // Clear air at 2 m, whose tables state less by each step: with the sun at the horizon (by about a tenth of a percent on the usual grid).
+    let (medium, from, sun) = (clear(), Place::above(2.0), towards(90.0, 0.0));
+    let tables = |error: f64| {
+        let tables = Tables::within(error, (from, sun, &[]), (&medium, EARTH, [0.1; 2], false), None).expect("solved");
+        (tables.solved.resolutions.last().copied(), tables.error(from, sun, &[]))
+    };
+    let (usual, states) = tables(0.02);
+    assert_eq!(usual, Some(Resolution::RENDER));
+    assert!(states <= 0.02, "{states:e}");
+    // Less than it states: the next; and whatever that states, no further where 0.3 % or more is asked.
+    let (fine, finer) = tables(0.9 * states);
+    assert_eq!(fine, Some(Resolution::FINE));
+    assert!(finer < states, "{finer:e}, {states:e}");
+    // Less than the next states, too: the last, also if that states more than was asked.
+    let (finest, finest_states) = tables(0.5 * finer);
+    assert_eq!(finest, Some(Resolution::FINEST));
+    assert!(finest_states < finer, "{finest_states:e}, {finer:e}");
+    assert_eq!(tables(1e-9).0, Some(Resolution::FINEST));
+    // Next to no light: errors above 0.3 % may not be met on any grid, and the fine one is the last that is tried.
+    let dark = towards(100.0, 0.0);
+    let air = (&medium, EARTH, [0.1; 2], false);
+    let of = |error: f64| Tables::within(error, (from, dark, &[]), air, None).expect("solved").solved.resolutions;
+    assert_eq!(of(0.0031).last(), Some(&Resolution::FINE));
+    assert_eq!(of(0.0029).last(), Some(&Resolution::FINEST));
+}
+
+#[test]
 fn air_that_only_absorbs_leaves_the_ground() {
     let top = 6e4;
     let absorber =

@@ -94,14 +94,15 @@ impl<const L: usize> Solved<L> {
     /// Radiance of what is seen at an angle from the sun with this cosine.
     #[inline(always)]
     pub(super) fn shade(&self, seen: &Seen<L>, towards: f64, single: bool) -> [f64; L] {
-        self.with_particles(&self.smooth(seen, towards), (&seen.peaks, &seen.once), towards, single)
+        self.with_particles(&self.smooth((&seen.rest, &seen.once), towards), (&seen.peaks, &seen.once), towards, single)
     }
 
-    /// The part of it that is smooth in the direction: all but sunlight scattered once by particles.
+    /// The part of it that is smooth in the direction, all but sunlight scattered once by particles: of [`Seen`] the rest, and what each
+    /// species scatters once.
     #[inline(always)]
-    pub(super) fn smooth(&self, seen: &Seen<L>, towards: f64) -> [f64; L] {
-        let mut sum = seen.rest;
-        for (one, once) in self.optics.species.iter().zip(&seen.once).filter(|(one, _)| one.is_molecular()) {
+    pub(super) fn smooth(&self, (rest, once): (&[f64; L], &[[f64; L]; MOST_SPECIES]), towards: f64) -> [f64; L] {
+        let mut sum = *rest;
+        for (one, once) in self.optics.species.iter().zip(once).filter(|(one, _)| one.is_molecular()) {
             let mut phase = one.phase.values(towards);
             for j in 0..L {
                 phase[j] *= one.whole[j];
