@@ -15,12 +15,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Directions in which a picture is looked at.
 const DIRECTIONS: usize = 96;
 
-/// Fans of a direction in the first round, and on average in the others; after how many rounds the error is looked at.
+/// Fans of a direction and a round; after how many rounds the error is looked at.
 const FANS: u32 = 4;
 const LOOKS: [u32; 8] = [1, 2, 3, 4, 6, 8, 16, 64];
-
-/// Least and most fans of a direction in a round: two show how far they spread.
-const LEAST_AND_MOST: (u32, u32) = (2, 16);
 
 /// Standard errors that a number is below with 95 % confidence: of one look, and of each of [`LOOKS`] so that the eight together
 /// have it (5 % / 8, Bonferroni).
@@ -143,32 +140,6 @@ struct Looked {
     table: Vec<Vec<f64>>,
     /// Sums over rounds of means and of their variances.
     sums: Vec<Vec<(f64, f64)>>,
-    /// Fans of a round, and so far.
-    fans: u32,
-    had: u64,
-}
-
-impl Looked {
-    /// The noise of its first round relative to radiance: root mean square of all rows and wavelengths.
-    fn noise(&self) -> f64 {
-        let rows =
-            self.sums.iter().map(|row| row.iter().zip(&self.table[0]).map(|(sum, light)| sum.1 / (light * light)));
-        let all: Vec<f64> = rows.flatten().collect();
-        (all.iter().sum::<f64>() / all.len() as f64).sqrt()
-    }
-}
-
-/// After the first round, gives the directions fans in proportion to their noise, since the noisiest are what hides the error. What a round
-/// finds has the same mean however many fans it has, and rounds count alike, so that nothing is biased by it.
-fn share_out(all: &mut [Looked]) {
-    let noises: Vec<f64> = all.iter().map(Looked::noise).collect();
-    let mean = noises.iter().sum::<f64>() / noises.len() as f64;
-    let (least, most) = LEAST_AND_MOST;
-    for (looked, noise) in all.iter_mut().zip(noises) {
-        if mean > 0.0 {
-            looked.fans = ((f64::from(FANS) * noise / mean).round() as u32).clamp(least, most);
-        }
-    }
 }
 
 /// Directions of a picture, spread evenly over its pixels (R_2 of Roberts 2018).
@@ -189,7 +160,7 @@ fn directions(camera: &Camera, size: (u32, u32), packets: &[Box<dyn Certifies + 
 }
 
 /// Looks at 96 directions of a picture of solved tables until it is clear, with 95 % confidence, whether their root mean square error
-/// is below `asked`, that of each Stokes parameter if the picture has them, or each has had 256 fans on average, or `stop` is set. The sun is the
+/// is below `asked`, that of each Stokes parameter if the picture has them, or each has had 256 fans, or `stop` is set. The sun is the
 /// middle of its disc. `None` if the picture has no solved tables or sees no light.
 #[must_use]
 pub fn certify(
@@ -225,16 +196,12 @@ pub fn certify(
 fn go_round(all: &mut [Looked], packets: &[Box<dyn Certifies + '_>], seed: u64, round: u32) {
     all.par_iter_mut().enumerate().for_each(|(i, looked)| {
         let stream = (i as u64) << 32 | u64::from(round);
-        let found = joined(packets.iter().map(|packet| packet.certified(looked.direction, looked.fans, seed, stream)));
-        looked.had += u64::from(looked.fans);
+        let found = joined(packets.iter().map(|packet| packet.certified(looked.direction, FANS, seed, stream)));
         for (sum, one) in looked.sums.iter_mut().flatten().zip(found.into_iter().flatten()) {
             sum.0 += one.0;
             sum.1 += one.1;
         }
     });
-    if round == 0 {
-        share_out(all);
-    }
 }
 
 /// The rows of all packets, each longer by those of the next.
@@ -271,7 +238,7 @@ pub fn certify_table<const L: usize>(
 fn look(direction: DVec3, packets: &[Box<dyn Certifies + '_>]) -> Option<Looked> {
     let table = joined(packets.iter().map(|packet| packet.table(direction)));
     let sums = table.iter().map(|row| vec![(0.0, 0.0); row.len()]).collect();
-    table[0].iter().all(|&light| light > 0.0).then_some(Looked { direction, table, sums, fans: FANS, had: 0 })
+    table[0].iter().all(|&light| light > 0.0).then_some(Looked { direction, table, sums })
 }
 
 /// The verdict after some rounds, the bounds so many standard errors above.
@@ -280,7 +247,7 @@ fn judge(all: &[Looked], rounds: u32, asked: f64, confident: f64) -> Verdict {
     Verdict {
         asked,
         errors: (0..rows).map(|row| residual(all, row, rounds, confident)).collect(),
-        size: (all.len(), all.iter().map(|looked| looked.had).sum()),
+        size: (all.len(), all.len() as u64 * u64::from(rounds * FANS)),
     }
 }
 
@@ -341,8 +308,6 @@ mod tests {
                 direction: DVec3::Z,
                 table: vec![vec![1.0], vec![0.5]],
                 sums: vec![vec![(4.0 * truth, 16.0 * 0.03 * 0.03)], vec![(4.0 * 0.48, 0.0)]],
-                fans: FANS,
-                had: 0,
             }
         };
         let all: Vec<_> = (0..100).map(looked).collect();

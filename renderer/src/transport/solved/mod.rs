@@ -192,7 +192,8 @@ impl Resolution {
     /// With the directions of [`Resolution::FINE`].
     pub const GOOD: Self = Self { levels: 18, suns: 36, zeniths: [10, 6, 8], parts: 8, degree: 24, change: 2e-4 };
 
-    /// With its suns, too.
+    /// With its suns, too. It has few levels for haze with a sharp end, an error that it shares with [`Resolution::RENDER`]: tables that state their
+    /// error go on to [`Resolution::FINE`] instead.
     pub const BETTER: Self = Self { levels: 24, suns: 48, zeniths: [10, 6, 8], parts: 8, degree: 24, change: 2e-4 };
 
     /// Finer than [`Resolution::FINE`] in everything: what the others are judged by.
