@@ -140,6 +140,31 @@ impl<const L: usize> Optics<L> {
         std::array::from_fn(|j| if whole[j] > 0.0 { sum[j] / whole[j] } else { 0.0 })
     }
 
+    /// The share of what particles scatter that is taken to go straight on, in moments beyond the last: the mean over the species, weighed by
+    /// what they scatter above the ground. 0 without particles.
+    fn beyond_moments(&self) -> [f64; L] {
+        let columns = self.medium.columns(Shape::Flat, Place::above(0.0), DVec3::Z).unwrap_or_default();
+        let (mut sum, mut whole) = ([0.0; L], [0.0; L]);
+        for one in self.species.iter().filter(|one| !one.is_molecular()) {
+            for (j, f) in one.straight().into_iter().enumerate() {
+                let scattered = columns[one.component] * one.scattering[j] * one.whole[j];
+                whole[j] += scattered;
+                sum[j] += scattered * f;
+            }
+        }
+        std::array::from_fn(|j| if whole[j] > 0.0 { sum[j] / whole[j] } else { 0.0 })
+    }
+
+    /// What tables hide whose grid leaves out so much of what [`Resolution::RENDER`] does: always, and besides with a low sun.
+    fn hidden(&self, grid: f64) -> [[f64; L]; 2] {
+        if self.moments.degree() <= 2 {
+            return [[0.0; L]; 2];
+        }
+        let besides = self.beyond_moments().map(|share| grid * HIDDEN_OF_PARTICLES * share);
+        let in_peaks = self.in_peaks();
+        [std::array::from_fn(|j| grid * HIDDEN + besides[j] + HIDDEN_IN_PEAKS * in_peaks[j]), besides]
+    }
+
     /// Which moments count where the species have these weights; none if they have none.
     #[inline(always)]
     fn reach(&self, weights: &[[f64; L]]) -> Option<Reach> {
@@ -215,16 +240,33 @@ pub struct Tables<const L: usize> {
     pub solved: Solved<L>,
     /// The next coarser, from which the error of the finest follows.
     coarser: Solved<L>,
-    /// What the two do not show, of each wavelength.
-    hidden: [f64; L],
+    /// What the two do not show, of each wavelength: always, and besides with a low sun.
+    hidden: [[f64; L]; 2],
 }
 
-/// What [`Resolution::RENDER`] and the one below it leave out alike where phase functions have peaks: moments beyond the last, mostly at the
-/// horizon. By certificates (`airlight study solved-suns`).
-const HIDDEN: f64 = 3e-3;
+/// What [`Resolution::RENDER`] and the one below it leave out alike where phase functions have peaks, moments beyond the last: something
+/// always, a share of what particles scatter there ([`Optics::beyond_moments`]), as much again with a low sun, when it is a bright band at the
+/// horizon; and a share of what goes straight on where most light does ([`Optics::in_peaks`]). By certificates (`airlight study solved-suns`).
+const HIDDEN: f64 = 2e-3;
+const HIDDEN_OF_PARTICLES: f64 = 1.7e-2;
+const HIDDEN_IN_PEAKS: f64 = 3e-3;
 
-/// How much of that [`Resolution::FINE`] still hides.
+/// How much of the first two [`Resolution::FINE`] and [`Resolution::FINEST`] still hide.
 const FINE_HIDES: f64 = 1.0 / 3.0;
+const FINEST_HIDES: f64 = 1.0 / 6.0;
+
+/// Errors that ask for [`Resolution::FINEST`], whose cost few are worth.
+const FINEST_BELOW: f64 = 3e-3;
+
+/// How low a sun is that shows the band at the horizon, 0 to 1: elevations in degrees at which it begins, is whole from and to, and ends. (In
+/// twilight grids differ by more than moments hide.)
+fn lowness(from: Place, sun: DVec3) -> f64 {
+    const ELEVATIONS: [f64; 4] = [14.0, 6.0, -2.0, -4.0];
+    let [begins, from_here, to_here, ends] = ELEVATIONS;
+    let elevation = from.up.dot(sun).clamp(-1.0, 1.0).asin().to_degrees();
+    ((begins - elevation) / (begins - from_here)).clamp(0.0, 1.0)
+        * ((elevation - ends) / (to_here - ends)).clamp(0.0, 1.0)
+}
 
 impl<const L: usize> Tables<L> {
     /// Solves for `air` (medium, form of the planet, albedo of the ground; whether of polarised light or of radiance alone) on finer grids
@@ -242,21 +284,20 @@ impl<const L: usize> Tables<L> {
         covers_planet(air.1)?;
         let coarser = Solved::of(air, &Resolution::COARSE, kept)?;
         let solved = coarser.again(&Resolution::RENDER, kept)?;
-        let few = if solved.optics.moments.degree() > 2 { HIDDEN } else { 0.0 };
-        let hidden = solved.optics.in_peaks().map(|share| few + HIDDEN * share);
+        let hidden = solved.optics.hidden(1.0);
         let usual = Self { solved, coarser, hidden };
         if usual.error(from, sun, looks) <= error {
             return Ok(usual.settled());
         }
         let solved = Solved::begun(air, &Resolution::FINE, Some(&usual.solved), kept)?;
-        let hidden = solved.optics.in_peaks().map(|share| FINE_HIDES * few + HIDDEN * share);
+        let hidden = solved.optics.hidden(FINE_HIDES);
         let fine = Self { solved, coarser: usual.solved, hidden };
         // A low sun may ask for more than any grid has: the finest is for those that ask for what moments hide.
-        if error > HIDDEN || fine.error(from, sun, looks) <= error {
+        if error > FINEST_BELOW || fine.error(from, sun, looks) <= error {
             return Ok(fine.settled());
         }
         let solved = Solved::begun(air, &Resolution::FINEST, Some(&fine.solved), kept)?;
-        let hidden = solved.optics.in_peaks().map(|share| HIDDEN * share);
+        let hidden = solved.optics.hidden(FINEST_HIDES);
         Ok(Self { solved, coarser: fine.solved, hidden }.settled())
     }
 
@@ -277,7 +318,8 @@ impl<const L: usize> Tables<L> {
     #[must_use]
     pub fn errors(&self, from: Place, sun: DVec3, looks: &[DVec3]) -> [f64; L] {
         let off = self.solved.differences(&self.coarser, from, sun, looks);
-        std::array::from_fn(|j| (FINER * off[j]).hypot(self.hidden[j]))
+        let ([always, besides], low) = (self.hidden, lowness(from, sun));
+        std::array::from_fn(|j| (FINER * off[j]).hypot(always[j] + low * besides[j]))
     }
 }
 
