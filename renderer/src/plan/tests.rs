@@ -168,3 +168,13 @@ fn a_planned_picture_has_the_asked_error() {
         assert!(square.sqrt() / mean < asked, "{} of {asked}: {:?}", square.sqrt() / mean, plan.candidate);
     }
 }
+
+#[test]
+fn every_grid_but_the_finest_is_a_rung() {
+    for fineness in Fineness::ALL.into_iter().filter(|grid| *grid != Fineness::Finest) {
+        for polarised in [false, true] {
+            let transfer = Transfer { fineness: Some(fineness), polarised };
+            assert_eq!(TRANSFERS[transfer.index()], transfer, "what is not among them is taken for the first");
+        }
+    }
+}

@@ -135,8 +135,10 @@ const PATHS: u32 = 8;
 const SIDE: u32 = 256;
 const STEP: usize = 4;
 
-/// Tables that are made for an atmosphere.
-const SOLUTIONS: f64 = 13.0;
+/// Whether a transfer is not solved, but follows from the one with polarisation.
+fn follows(one: Transfer) -> bool {
+    !one.polarised && !matches!(one.fineness, None | Some(Fineness::Coarse | Fineness::Light))
+}
 
 /// Measures the scenes of an atmosphere.
 pub(super) fn measure(
@@ -153,11 +155,13 @@ pub(super) fn measure(
     };
     let table = |fineness, polarised| Transfer { fineness: Some(fineness), polarised };
     let paths = Scene { method: Method::Paths, follow_polarisation: Some(true), ..scenes[0].clone() };
+    // Besides: the truth, and coarse tables at all wavelengths and at four.
+    let solutions = 3 + TRANSFERS.into_iter().filter(|one| !follows(*one)).count();
     let mut done = 0.0;
     let mut made = |transfer, wavelengths: &Wavelengths| {
         let made = at(transfer, wavelengths);
         done += 1.0;
-        step(done / SOLUTIONS);
+        step(done / solutions as f64);
         made
     };
     let mut truth = made(table(Fineness::Finest, true), &eight)?;
@@ -165,8 +169,7 @@ pub(super) fn measure(
     let mut four = made(table(Fineness::Coarse, false), &Spectrum::Seen4.wavelengths())?;
     let mut transfers = Vec::new();
     for one in TRANSFERS {
-        let follows = !one.polarised && !matches!(one.fineness, None | Some(Fineness::Coarse | Fineness::Light));
-        transfers.push(if follows { None } else { Some(made(one, &eight)?) });
+        transfers.push(if follows(one) { None } else { Some(made(one, &eight)?) });
     }
     let mut paths = Turned::new(data, &paths)?;
     let mut rows = Vec::new();

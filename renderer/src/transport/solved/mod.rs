@@ -124,32 +124,26 @@ struct Reach {
 }
 
 impl<const L: usize> Optics<L> {
-    /// By how much scattering that is taken to go straight on outweighs the rest, f / (1 - f) - 1 where that is positive: the mean over the
-    /// species, weighed by what they scatter above the ground. 0 unless phase functions have most of their light in moments beyond the
-    /// last.
+    /// By how much scattering that is taken to go straight on outweighs the rest, f / (1 - f) - 1 where that is positive: 0 unless phase
+    /// functions have most of their light in moments beyond the last.
     fn in_peaks(&self) -> [f64; L] {
-        let columns = self.medium.columns(Shape::Flat, Place::above(0.0), DVec3::Z).unwrap_or_default();
-        let (mut sum, mut whole) = ([0.0; L], [0.0; L]);
-        for one in &self.species {
-            for (j, f) in one.straight().into_iter().enumerate() {
-                let scattered = columns[one.component] * one.scattering[j] * one.whole[j];
-                whole[j] += scattered;
-                sum[j] += scattered * (f / (1.0 - f) - 1.0).max(0.0);
-            }
-        }
-        std::array::from_fn(|j| if whole[j] > 0.0 { sum[j] / whole[j] } else { 0.0 })
+        self.mean_of_straight(self.species.iter(), |f| (f / (1.0 - f) - 1.0).max(0.0))
     }
 
-    /// The share of what particles scatter that is taken to go straight on, in moments beyond the last: the mean over the species, weighed by
-    /// what they scatter above the ground. 0 without particles.
+    /// The share f of what particles scatter that is taken to go straight on, in moments beyond the last; 0 without particles.
     fn beyond_moments(&self) -> [f64; L] {
+        self.mean_of_straight(self.species.iter().filter(|one| !one.is_molecular()), |f| f)
+    }
+
+    /// The mean over species of a function of their share f, weighed by what they scatter above the ground.
+    fn mean_of_straight<'a>(&self, species: impl Iterator<Item = &'a Species<L>>, of: impl Fn(f64) -> f64) -> [f64; L] {
         let columns = self.medium.columns(Shape::Flat, Place::above(0.0), DVec3::Z).unwrap_or_default();
         let (mut sum, mut whole) = ([0.0; L], [0.0; L]);
-        for one in self.species.iter().filter(|one| !one.is_molecular()) {
+        for one in species {
             for (j, f) in one.straight().into_iter().enumerate() {
                 let scattered = columns[one.component] * one.scattering[j] * one.whole[j];
                 whole[j] += scattered;
-                sum[j] += scattered * f;
+                sum[j] += scattered * of(f);
             }
         }
         std::array::from_fn(|j| if whole[j] > 0.0 { sum[j] / whole[j] } else { 0.0 })

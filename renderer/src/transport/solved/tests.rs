@@ -306,6 +306,28 @@ fn the_asked_error_chooses_the_grid() {
 }
 
 #[test]
+fn moments_that_no_grid_has_are_stated_most_with_a_low_sun() {
+    // Whole from 6 to -2 degrees, half at 10 and -3.
+    for (elevation, low) in [(90.0, 0.0), (14.0, 0.0), (10.0, 0.5), (6.0, 1.0), (-2.0, 1.0), (-3.0, 0.5), (-4.0, 0.0)] {
+        let found = lowness(Place::above(2.0), towards(90.0 - elevation, 0.0));
+        assert!((found - low).abs() < 1e-9, "{elevation}: {found}");
+    }
+    // A Henyey-Greenstein function has chi_l = g^l: of particles with g = 0.9 the share 0.9^(degree + 1) goes straight on.
+    let top = 6e4;
+    let phase = Phase::HenyeyGreenstein { g: [0.9] };
+    let haze = Component { density: exponential(1e3, top), scattering: [1e-4], absorption: [0.0], phase };
+    let air = Component { density: exponential(8e3, top), scattering: [1e-5], absorption: [0.0], phase: rayleigh(0.0) };
+    let coarse = Resolution { levels: 10, suns: 20, zeniths: [4, 2, 3], parts: 2, degree: 6, change: 5e-4 };
+    let optics = |parts| Solved::new(&medium(parts, top), EARTH, [0.1], &coarse).expect("round").optics;
+    let [always, besides] = optics(vec![air.clone(), haze]).hidden(1.0);
+    let expected = HIDDEN_OF_PARTICLES * 0.9_f64.powi(7);
+    // The share is the moment by quadrature, to some 1e-4.
+    assert!((besides[0] / expected - 1.0).abs() < 1e-3, "{besides:?}, {expected:e}");
+    assert!(always[0] >= HIDDEN + besides[0], "{always:?}");
+    assert_eq!(optics(vec![air]).hidden(1.0), [[0.0]; 2]);
+}
+
+#[test]
 fn air_that_only_absorbs_leaves_the_ground() {
     let top = 6e4;
     let absorber =
