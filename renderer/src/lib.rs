@@ -5,6 +5,7 @@ pub mod bench;
 pub mod camera;
 mod carried;
 pub mod cases;
+mod cholesky;
 pub mod cli;
 mod clock;
 pub mod compare;

@@ -71,6 +71,8 @@ pub(super) enum StudyName {
     Planner,
     /// What leaving out each part of the model changes, on thirty scenes (6 core-minutes)
     Atlas,
+    /// How many wavelengths a colour takes, and what is best taken for the spectrum between them (one core-minute)
+    Wavelengths,
     /// What leaving polarisation out costs over the sun's elevation, in clear air and the nine biomes: scalar beside polarised radiance
     Polarisation,
 }
@@ -91,6 +93,7 @@ impl StudyName {
             Self::Planner => "planner",
             Self::Atlas => "atlas",
             Self::NeutralPoints => "neutral-points",
+            Self::Wavelengths => "wavelengths",
             Self::Polarisation => "polarisation",
         }
     }
@@ -127,6 +130,7 @@ pub(super) fn run(args: &StudyArgs) -> Result<Outcome, Failure> {
         StudyName::PolarisedSuns => chart(study::solved::polarised_suns),
         StudyName::SolvedGrids => chart(study::solved::grids),
         StudyName::NeutralPoints => chart(study::neutral_points::make),
+        StudyName::Wavelengths => chart(study::wavelengths::make),
         StudyName::Polarisation => Box::new(|data, progress| {
             let (chart, measured) = study::polarisation::make(data, progress)?;
             Ok(Made { measured: Some(measured.csv().into_bytes()), ..Made::from(chart) })

@@ -228,8 +228,8 @@ mod tests {
 
     fn encoded() -> Vec<u8> {
         let wavelengths = Wavelengths::new(vec![450.0, 550.25]).expect("valid");
-        let (sun, observer) = test_data::light();
-        let colour = Colour::new(&sun, &observer, &wavelengths).expect("in range");
+        let (sun, observer, ozone) = test_data::light();
+        let colour = Colour::new(&sun, &observer, &ozone, &wavelengths).expect("in range");
         let mut film = Film::new(3, 2, vec![2.0, 1.5], false);
         let mut rows = film.rows_mut();
         for (value, red) in [(1.0, 10.0), (3.0, 20.0)] {
@@ -265,8 +265,8 @@ mod tests {
     #[test]
     fn polarised_light_is_read_back() {
         let wavelengths = Wavelengths::new(vec![550.0]).expect("valid");
-        let (sun, observer) = test_data::light();
-        let colour = Colour::new(&sun, &observer, &wavelengths).expect("in range");
+        let (sun, observer, ozone) = test_data::light();
+        let colour = Colour::new(&sun, &observer, &ozone, &wavelengths).expect("in range");
         let mut film = Film::new(1, 1, vec![2.0], true);
         for u in [2.0, 4.0] {
             film.rows_mut()[0].add(0, &[10.0, -4.0, u], [1.0; 3]);

@@ -85,8 +85,8 @@ mod tests {
     #[test]
     fn pixels_are_read_back_as_they_were_shown() {
         let wavelengths = Wavelengths::visible(1).expect("valid");
-        let (sun, observer) = test_data::light();
-        let colour = Colour::new(&sun, &observer, &wavelengths).expect("in range");
+        let (sun, observer, ozone) = test_data::light();
+        let colour = Colour::new(&sun, &observer, &ozone, &wavelengths).expect("in range");
         let mut film = Film::new(2, 1, vec![1.0], false);
         film.rows_mut()[0].add(1, &[1.0], [100.0, 50.0, 25.0]);
         let picture = Picture { film: &film, disc: &DiscLayer::new(), colour: &colour };
@@ -106,8 +106,8 @@ mod tests {
     #[test]
     fn polarisation_is_grey_by_degree_and_coloured_by_angle() {
         let wavelengths = Wavelengths::visible(1).expect("valid");
-        let (sun, observer) = test_data::light();
-        let colour = Colour::new(&sun, &observer, &wavelengths).expect("in range");
+        let (sun, observer, ozone) = test_data::light();
+        let colour = Colour::new(&sun, &observer, &ozone, &wavelengths).expect("in range");
         let mut film = Film::new(4, 1, vec![1.0], true);
         // Horizontal, at 60 degrees, vertical and weak, natural.
         let (sin, cos) = 120_f64.to_radians().sin_cos();

@@ -76,18 +76,16 @@ impl Transfer {
 /// Wavelengths of the spectrum that is taken for the whole: even ones from 380 to 780 nm.
 pub const SPECTRUM: usize = 31;
 
-/// Wavelengths among them at which transfers are compared: what a grid is off varies slowly with wavelength.
-pub const NODES: [usize; 8] = [0, 4, 9, 13, 17, 21, 26, 30];
-
 /// At which wavelengths light is followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Spectrum {
-    /// 433, 527, 593 and 673 nm: of all fours that which meets luminances and colours of clear and hazy skies, by day and in twilight, best
+    /// 447, 527, 593 and 660 nm: among the fours that X, Y and Z follow best from, by the covariance of [`crate::spectrum::Between`]
     Seen4,
-    /// 393, 407, 447, 487, 540, 607, 660 and 673 nm: likewise of eights
+    /// 407, 447, 500, 540, 567, 593, 620 and 673 nm: likewise of eights
     Seen8,
-    /// Eight from 380 to 780 nm
-    Even8,
+    /// 380, 433, 487, 540, 593, 647, 713 and 780 nm: likewise that radiances at sixteen follow from; transfers are compared at
+    /// these, for what a grid is off varies slowly with wavelength
+    Spread8,
     /// Sixteen from 380 to 780 nm
     Even16,
     /// All 31
@@ -96,15 +94,15 @@ pub enum Spectrum {
 
 impl Spectrum {
     /// All of them, the cheapest first.
-    pub const ALL: [Self; 5] = [Self::Seen4, Self::Seen8, Self::Even8, Self::Even16, Self::Even31];
+    pub const ALL: [Self; 5] = [Self::Seen4, Self::Seen8, Self::Spread8, Self::Even16, Self::Even31];
 
     /// Places among the [`SPECTRUM`].
     #[must_use]
     pub fn places(self) -> Vec<usize> {
         match self {
-            Self::Seen4 => vec![4, 11, 16, 22],
-            Self::Seen8 => vec![1, 2, 5, 8, 12, 17, 21, 22],
-            Self::Even8 => NODES.to_vec(),
+            Self::Seen4 => vec![5, 11, 16, 21],
+            Self::Seen8 => vec![2, 5, 9, 12, 14, 16, 18, 22],
+            Self::Spread8 => vec![0, 4, 8, 12, 16, 20, 25, 30],
             Self::Even16 => (0..SPECTRUM).step_by(2).collect(),
             Self::Even31 => (0..SPECTRUM).collect(),
         }
@@ -128,7 +126,7 @@ impl Spectrum {
         match self {
             Self::Seen4 => "4",
             Self::Seen8 => "8-seen",
-            Self::Even8 => "8",
+            Self::Spread8 => "8",
             Self::Even16 => "16",
             Self::Even31 => "31",
         }
@@ -139,7 +137,7 @@ impl Spectrum {
     pub fn lanes(self) -> (usize, usize) {
         match self {
             Self::Seen4 => (4, 1),
-            Self::Seen8 | Self::Even8 => (8, 1),
+            Self::Seen8 | Self::Spread8 => (8, 1),
             Self::Even16 => (16, 1),
             Self::Even31 => (16, 2),
         }

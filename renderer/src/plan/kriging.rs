@@ -4,12 +4,11 @@
 //! Values y_i at points x_i are taken for samples of a random function of mean m and covariance s^2 k(x, x'). With K_ij = k(x_i, x_j),
 //! plus the share of noise on the diagonal, at another point the mean is m + k^T K^-1 (y - m) and the variance s^2 (k(x, x) - k^T K^-1 k).
 
+use crate::cholesky::Cholesky;
+
 /// A covariance of any two of the points, factorised.
 #[derive(Debug, Clone)]
-pub(super) struct Kriging {
-    /// L of K = L L^T, row by row.
-    factor: Vec<Vec<f64>>,
-}
+pub(super) struct Kriging(Cholesky);
 
 /// Variance that is no function of the point, over that which is.
 const NOISE: f64 = 0.02;
@@ -17,43 +16,17 @@ const NOISE: f64 = 0.02;
 impl Kriging {
     /// Of `count` points with that covariance, 1 of a point with itself.
     pub(super) fn new(count: usize, covariance: impl Fn(usize, usize) -> f64) -> Self {
-        let mut factor: Vec<Vec<f64>> = Vec::with_capacity(count);
-        for i in 0..count {
-            let mut row = vec![0.0; i + 1];
-            for j in 0..=i {
-                let noise = if i == j { NOISE } else { 0.0 };
-                let sum: f64 = (0..j).map(|k| row[k] * if i == j { row[k] } else { factor[j][k] }).sum();
-                let rest = covariance(i, j) + noise - sum;
-                row[j] = if i == j { rest.max(1e-9).sqrt() } else { rest / factor[j][j] };
-            }
-            factor.push(row);
-        }
-        Self { factor }
-    }
-
-    /// L^-1 b.
-    fn forwards(&self, b: &[f64]) -> Vec<f64> {
-        let mut x = b.to_vec();
-        for i in 0..x.len() {
-            let sum: f64 = (0..i).map(|k| self.factor[i][k] * x[k]).sum();
-            x[i] = (x[i] - sum) / self.factor[i][i];
-        }
-        x
+        Self(Cholesky::new(count, |i, j| covariance(i, j) + if i == j { NOISE } else { 0.0 }))
     }
 
     /// K^-1 b.
     pub(super) fn solve(&self, b: &[f64]) -> Vec<f64> {
-        let mut x = self.forwards(b);
-        for i in (0..x.len()).rev() {
-            let sum: f64 = (i + 1..x.len()).map(|k| self.factor[k][i] * x[k]).sum();
-            x[i] = (x[i] - sum) / self.factor[i][i];
-        }
-        x
+        self.0.solve(b)
     }
 
     /// What the covariances `k` with the points leave of a variance of 1, noise included.
     pub(super) fn variance(&self, k: &[f64]) -> f64 {
-        (1.0 + NOISE - self.forwards(k).iter().map(|x| x * x).sum::<f64>()).max(NOISE)
+        (1.0 + NOISE - self.0.forwards(k).iter().map(|x| x * x).sum::<f64>()).max(NOISE)
     }
 }
 

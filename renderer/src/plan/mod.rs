@@ -14,7 +14,7 @@ mod predict;
 mod tests;
 
 pub use atlas::{Atlas, Difference};
-pub use candidates::{Candidate, NODES, SPECTRUM, Spectrum, TRANSFERS, Transfer};
+pub use candidates::{Candidate, SPECTRUM, Spectrum, TRANSFERS, Transfer};
 pub use measured::{Costs, Measured, Row};
 pub use outside::outside;
 pub use predict::{ASKED, Evidence, Plan, Prediction, Safe, margins};

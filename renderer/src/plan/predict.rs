@@ -19,8 +19,9 @@ impl Metric {
     }
 }
 
-/// Share of plans that are to meet their error where an atmosphere is left out of the measurements.
+/// Share of plans that are to meet their error where an atmosphere is left out of the measurements, and of those at each error.
 const SURE: f64 = 0.97;
+const SURE_OF_EACH: f64 = 0.95;
 
 /// Margins that are tried, in standard deviations of the prediction.
 const MARGINS: (f64, f64) = (0.0, 4.0);
@@ -197,20 +198,20 @@ pub fn margins(measured: &Measured) -> Result<[f64; 3], String> {
 /// Pixels of the pictures for which margins are found.
 const PIXELS: f64 = 256.0 * 256.0;
 
-/// The least margin with which [`SURE`] of the choices for scenes predicted from others meet what was asked.
+/// The least margin with which [`SURE`] of the choices for scenes predicted from others meet what was asked, and [`SURE_OF_EACH`].
 fn margin(metric: Metric, measured: &Measured, left_out: &[Prediction]) -> f64 {
     let met = |margin: f64| {
-        let (mut good, mut all) = (0.0, 0.0);
-        for (row, prediction) in measured.rows.iter().zip(left_out) {
-            for asked in ASKED.map(|share| metric.unit(share)) {
+        let scenes = measured.rows.len() as f64;
+        let shares = ASKED.map(|share| {
+            let asked = metric.unit(share);
+            let good = measured.rows.iter().zip(left_out).filter(|(row, prediction)| {
                 // Paths, which are taken where there is no other, meet what they are asked for.
                 let chosen = prediction.choose(asked, (metric, margin), PIXELS, &|_| true);
-                let met = chosen.is_none_or(|(i, _)| row.errors[i][metric as usize] <= asked);
-                all += 1.0;
-                good += if met { 1.0 } else { 0.0 };
-            }
-        }
-        good >= SURE * all
+                chosen.is_none_or(|(i, _)| row.errors[i][metric as usize] <= asked)
+            });
+            good.count() as f64 / scenes
+        });
+        shares.iter().sum::<f64>() >= SURE * shares.len() as f64 && shares.iter().all(|&share| share >= SURE_OF_EACH)
     };
     let (low, high) = MARGINS;
     let mut margins = (0..=MARGIN_STEPS).map(|i| low + (high - low) * f64::from(i) / f64::from(MARGIN_STEPS));

@@ -12,7 +12,7 @@ use crate::film::tone;
 use crate::plan::Metric;
 use crate::sampling::Sampler;
 use crate::scene::Scene;
-use crate::spectrum::{Colour, Wavelengths, between, ciede2000};
+use crate::spectrum::{Between, Colour, Wavelengths, ciede2000};
 use crate::transport::Method;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -116,8 +116,8 @@ pub fn achieved(
     let truth = truth(scene, metric, asked_at);
     let exact = Sky::new(&truth, data)?;
     let wavelengths = truth.wavelengths();
-    let places: Vec<(usize, Vec<f64>)> =
-        wavelengths.nm().iter().map(|&nm| between(scene.wavelengths().nm(), nm)).collect();
+    let between = Between::new(&data.ozone_cross_section, scene.wavelengths().nm())?;
+    let places = wavelengths.nm().iter().map(|&nm| between.weights(nm)).collect::<Result<Vec<_>, _>>()?;
     let directions = pixels(scene, sky);
     if directions.is_empty() {
         return Ok(None);
@@ -182,14 +182,12 @@ fn mean(exact: &Sky, direction: DVec3, (seed, pixel): (u64, u64), half: u64, poi
 /// What the picture has, and two estimates of the truth.
 type Looked = (Vec<f64>, [Vec<f64>; 2]);
 
-/// Squared errors of radiance, over the mean of each wavelength.
-fn radiance(looked: &[Looked], places: &[(usize, Vec<f64>)]) -> Vec<f64> {
+/// Squared errors of radiance, over the mean of each wavelength, which follows from those of the picture by these weights.
+fn radiance(looked: &[Looked], places: &[Vec<f64>]) -> Vec<f64> {
     let filled: Vec<Vec<f64>> = looked
         .iter()
         .map(|(picture, _)| {
-            let at = |(first, weights): &(usize, Vec<f64>)| {
-                weights.iter().zip(&picture[*first..]).map(|(w, v)| w * v).sum::<f64>()
-            };
+            let at = |weights: &Vec<f64>| weights.iter().zip(picture).map(|(w, v)| w * v).sum::<f64>();
             places.iter().map(at).collect()
         })
         .collect();
@@ -232,7 +230,7 @@ mod tests {
         let mut noise = || 0.2 * (2.0 * random.uniform() - 1.0);
         let looked: Vec<Looked> =
             (0..20_000).map(|_| (vec![1.01], [vec![1.0 + noise()], vec![1.0 + noise()]])).collect();
-        let found = Achieved::of(&radiance(&looked, &[(0, vec![1.0])]), (Metric::Radiance, 0.005), 0);
+        let found = Achieved::of(&radiance(&looked, &[vec![1.0]]), (Metric::Radiance, 0.005), 0);
         // Squares have the spread of a product of two such noises, 0.2^2 / 3 = 0.0133, over sqrt(20 000): 1e-4, the error squared itself; the
         // interval holds the truth and not much more.
         assert!(found.between[0] <= 0.0099 && found.between[1] > 0.0099 && found.between[1] < 0.02, "{found:?}");

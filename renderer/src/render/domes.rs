@@ -69,7 +69,7 @@ impl Near {
         let cheap = Cheap::new(Method::Isotropic, &medium, shape, albedo, None);
         let cheap = cheap.ok_or_else(|| Refusal("there is no isotropic closure".into()))?;
         let wavelengths = Wavelengths::new(nm.to_vec()).map_err(crate::scene::SceneError::from)?;
-        let colour = Colour::new(&data.sun, &data.observer, &wavelengths)?;
+        let colour = Colour::new(&data.sun, &data.observer, &data.ozone_cross_section, &wavelengths)?;
         Ok(Self { cheap, place, sun, colour, direct })
     }
 

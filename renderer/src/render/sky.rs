@@ -144,7 +144,7 @@ impl Sky {
         let carriers = carriers.collect::<Result<_, _>>()?;
         let irradiance = wavelengths.nm().iter().map(|&nm| data.sun.irradiance_w_m2_nm.at(nm));
         let mut irradiance_w_m2_nm: Vec<f64> = irradiance.collect::<Result<_, _>>()?;
-        let mut colour = scene.colour.colour(&data.sun, &data.observer, wavelengths)?;
+        let mut colour = scene.colour.colour(&data.sun, &data.observer, &data.ozone_cross_section, wavelengths)?;
         let fitted = if scene.method.is_dome() {
             let dome = domes::dome(scene, data, &air, turbidity)?;
             irradiance_w_m2_nm = vec![1.0; 3];

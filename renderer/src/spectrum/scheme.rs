@@ -4,7 +4,7 @@ use super::{Colour, Wavelengths, linear_srgb, xyz};
 use serde::{Deserialize, Serialize};
 use tables::TableError;
 use tables::units::LUMINOUS_EFFICACY_LM_W;
-use tables::views::{Observer, Sun};
+use tables::views::{Observer, OzoneCrossSection, Sun};
 
 /// How radiance at a few wavelengths becomes colour, with any transport method.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum, schemars::JsonSchema)]
@@ -66,11 +66,18 @@ impl Scheme {
     ///
     /// # Errors
     /// As [`Colour::new`].
-    pub fn colour(self, sun: &Sun, observer: &Observer, wavelengths: &Wavelengths) -> Result<Colour, TableError> {
+    pub fn colour(
+        self,
+        sun: &Sun,
+        observer: &Observer,
+        ozone: &OzoneCrossSection,
+        wavelengths: &Wavelengths,
+    ) -> Result<Colour, TableError> {
         match self {
-            Self::Spectral => Colour::new(sun, observer, wavelengths),
+            Self::Spectral => Colour::new(sun, observer, ozone, wavelengths),
             Self::Rgb => {
-                let [red, green, blue] = linear_srgb(Colour::new(sun, observer, &Wavelengths::default())?.white());
+                let [red, green, blue] =
+                    linear_srgb(Colour::new(sun, observer, ozone, &Wavelengths::default())?.white());
                 Ok(Colour::weighed(vec![xyz([0.0, 0.0, blue]), xyz([0.0, green, 0.0]), xyz([red, 0.0, 0.0])]))
             }
             Self::Four => {
@@ -89,7 +96,8 @@ mod tests {
 
     fn xyz_of(scheme: Scheme, wavelengths: &Wavelengths, f: impl Fn(f64) -> f64) -> [f64; 3] {
         let data = Data::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../data")).expect("tables");
-        let colour = scheme.colour(&data.sun, &data.observer, wavelengths).expect("in range");
+        let colour =
+            scheme.colour(&data.sun, &data.observer, &data.ozone_cross_section, wavelengths).expect("in range");
         colour.xyz(&wavelengths.nm().iter().map(|&nm| f(nm)).collect::<Vec<_>>())
     }
 

@@ -3,22 +3,21 @@
 //! Both sides of a difference are found by one method without noise: usual tables, the isotropic closure where planes are asked for; or by the same paths,
 //! where orders of scattering are counted.
 
-use super::directions;
 use super::ladder::Regime;
+use super::{directions, shown_apart};
 use crate::atmosphere::{Depolarisation, Haze, HazePhase};
 use crate::data::Data;
-use crate::film::tone;
 use crate::plan::{Atlas, Difference, Spectrum, Traits};
 use crate::render::{RenderError, Sky};
 use crate::sampling::Sampler;
 use crate::scene::{Albedo, Scene, SunShape};
-use crate::spectrum::{Scheme, Wavelengths, between, ciede2000};
+use crate::spectrum::{Between, Scheme, Wavelengths};
 use crate::transport::{Fineness, Method};
 use glam::DVec3;
-use tables::views::Biome;
+use tables::views::{Biome, OzoneCrossSection};
 
 /// (biome, optical depth or the type's own, albedo).
-const AIR: [(Option<Biome>, Option<f64>, f64); 5] = [
+pub(super) const AIR: [(Option<Biome>, Option<f64>, f64); 5] = [
     (None, None, 0.1),
     (Some(Biome::Background), None, 0.1),
     (Some(Biome::MaritimeClean), None, 0.06),
@@ -27,11 +26,11 @@ const AIR: [(Option<Biome>, Option<f64>, f64); 5] = [
 ];
 
 /// (altitude in km, elevation of the sun in degrees).
-const PLACES: [(f64, f64); 6] =
+pub(super) const PLACES: [(f64, f64); 6] =
     [(0.002, 60.0), (0.002, 25.0), (0.002, 8.0), (0.002, 1.0), (0.002, -4.0), (400.0, 45.0)];
 
 /// Directions, and samples of each where paths are traced.
-const DIRECTIONS: u32 = 64;
+pub(super) const DIRECTIONS: u32 = 64;
 const SAMPLES: u32 = 256;
 
 /// A part of the model: how a scene has it, and how it is left out.
@@ -89,7 +88,7 @@ const TERMS: [Term; 25] = [
     term("the sun's disc: a point", usual, |s| s.sun_shape = SunShape::Point),
     term("limb darkening", usual, |s| s.sun_shape = SunShape::Even),
     term("wavelengths: 16 for 31", |s| at(s, Spectrum::Even31), usual),
-    term("wavelengths: 8 for 16", usual, |s| at(s, Spectrum::Even8)),
+    term("wavelengths: 8 for 16", usual, |s| at(s, Spectrum::Spread8)),
     term("wavelengths: 4 for 16", usual, |s| at(s, Spectrum::Seen4)),
     term("quadrature: a matrix of four", usual, |s| s.colour = Scheme::Four),
     term("quadrature: three as R G B", usual, |s| s.colour = Scheme::Rgb),
@@ -138,25 +137,20 @@ fn seen(
 }
 
 /// Root mean squares of what differs: radiance at the wavelengths of the whole, luminance, colour.
-fn change(whole: &Seen, less: &Seen) -> [f64; 3] {
+fn change(ozone: &OzoneCrossSection, whole: &Seen, less: &Seen) -> Result<[f64; 3], RenderError> {
     let count = whole.factors.len() as f64;
     let nm = whole.wavelengths.nm();
+    let between = Between::new(ozone, less.wavelengths.nm())?;
     let mut radiance = 0.0;
     for (j, &nm_j) in nm.iter().enumerate() {
-        let (first, weights) = between(less.wavelengths.nm(), nm_j);
-        let filled = |factors: &Vec<f64>| weights.iter().zip(&factors[first..]).map(|(w, v)| w * v).sum::<f64>();
+        let weights = between.weights(nm_j)?;
+        let filled = |factors: &Vec<f64>| weights.iter().zip(factors).map(|(w, v)| w * v).sum::<f64>();
         let mean = whole.factors.iter().map(|factors| factors[j]).sum::<f64>() / count;
         let square = whole.factors.iter().zip(&less.factors).map(|(a, b)| (a[j] - filled(b)).powi(2)).sum::<f64>();
         radiance += square / count / (mean * mean) / nm.len() as f64;
     }
-    let luminances: Vec<f64> = whole.colours.iter().map(|xyz| xyz[1]).collect();
-    let mean = luminances.iter().sum::<f64>() / count;
-    let pairs = || whole.colours.iter().zip(&less.colours);
-    let luminance = pairs().map(|(a, b)| (a[1] - b[1]).powi(2)).sum::<f64>() / count;
-    let white = tone::automatic_white(&luminances);
-    let shown = |colour: &[f64; 3]| tone::displayed(*colour, white);
-    let colour = pairs().map(|(a, b)| ciede2000(shown(a), shown(b)).powi(2)).sum::<f64>() / count;
-    [radiance.sqrt(), luminance.sqrt() / mean, colour.sqrt()]
+    let [luminance, colour] = shown_apart(&whole.colours, &less.colours);
+    Ok([radiance.sqrt(), luminance, colour])
 }
 
 /// Makes the atlas on the current thread pool.
@@ -204,7 +198,7 @@ pub fn make(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Atlas, Rende
                     term: term.name.into(),
                     regime: Regime::of(&scene, depth).name().into(),
                     traits: Traits::of(&scene, sky),
-                    change: change(&whole, &less),
+                    change: change(&data.ozone_cross_section, &whole, &less)?,
                 });
             }
             progress((a * TERMS.len() + t + 1) as f64 / total);
@@ -269,7 +263,7 @@ mod tests {
             factors: vec![vec![factor; 16], vec![2.0 * factor; 16]],
             colours: vec![[factor; 3], [2.0 * factor; 3]],
         };
-        let [radiance, luminance, colour] = change(&of(1.0), &of(1.1));
+        let [radiance, luminance, colour] = change(&crate::test_data::light().2, &of(1.0), &of(1.1)).expect("in range");
         // sqrt((0.1^2 + 0.2^2) / 2) over 1.5.
         assert!((radiance - 0.025_f64.sqrt() / 1.5).abs() < 1e-12 && (luminance - radiance).abs() < 1e-12);
         assert!(colour > 0.5);

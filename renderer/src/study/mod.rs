@@ -10,10 +10,13 @@ pub mod polarisation;
 pub mod solved;
 pub mod stability;
 pub mod strip;
+pub mod wavelengths;
 
+use crate::film::tone;
 use crate::render::RenderError;
 use crate::sampling::spiral;
 use crate::scene::Scene;
+use crate::spectrum::ciede2000;
 use glam::{DMat3, DVec3};
 use std::fmt::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -30,6 +33,19 @@ fn directions(scene: &Scene, (count, turn): (u32, f64)) -> Vec<DVec3> {
         _ => [0.0, 1.0],
     };
     (0..count).map(|i| DMat3::from_rotation_z(turn) * spiral(i, count, heights)).collect()
+}
+
+/// How far colours are off what is right: rms of luminance over its mean, rms of CIEDE2000 as a PNG would show both, exposed for what is right.
+fn shown_apart(right: &[[f64; 3]], seen: &[[f64; 3]]) -> [f64; 2] {
+    let count = right.len() as f64;
+    let luminances: Vec<f64> = right.iter().map(|xyz| xyz[1]).collect();
+    let mean = luminances.iter().sum::<f64>() / count;
+    let pairs = || right.iter().zip(seen);
+    let luminance = pairs().map(|(r, s)| (r[1] - s[1]).powi(2)).sum::<f64>() / count;
+    let white = tone::automatic_white(&luminances);
+    let shown = |colour: &[f64; 3]| tone::displayed(*colour, white);
+    let colour = pairs().map(|(r, s)| ciede2000(shown(r), shown(s)).powi(2)).sum::<f64>() / count;
+    [luminance.sqrt() / mean, colour.sqrt()]
 }
 
 /// Hands 0 to `count` to `work`, `threads` at a time, each in a pool of one thread, so that every time is that of one core.

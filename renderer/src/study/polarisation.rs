@@ -134,7 +134,7 @@ fn measure(
 /// [`RenderError`] if the data do not have what it takes.
 pub fn make(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<(Chart, Measured), RenderError> {
     let wavelengths = Wavelengths::new(WAVELENGTHS.to_vec()).map_err(SceneError::from)?;
-    let colour = Colour::new(&data.sun, &data.observer, &wavelengths)?;
+    let colour = Colour::new(&data.sun, &data.observer, &data.ozone_cross_section, &wavelengths)?;
     let columns_of = |biome: Option<Biome>| -> Result<_, RenderError> {
         let medium = medium(data, biome, &WAVELENGTHS)?;
         let columns = Columns::new(&medium, SHAPE, Tolerance::RENDER);

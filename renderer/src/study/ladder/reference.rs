@@ -94,7 +94,7 @@ impl Reference {
     /// What is seen of a scene with this air and ground.
     pub(super) fn seen(&self, data: &Data, scene: &Scene) -> Result<Right, RenderError> {
         let wavelengths = Wavelengths::visible(WAVELENGTHS).unwrap_or_default();
-        let colour = Colour::new(&data.sun, &data.observer, &wavelengths)?;
+        let colour = Colour::new(&data.sun, &data.observer, &data.ozone_cross_section, &wavelengths)?;
         let directions = directions(scene, (DIRECTIONS, 0.0));
         let radiances = self.radiances(data, scene, &directions)?;
         let colours = radiances.iter().map(|factors| colour.xyz(factors)).collect();

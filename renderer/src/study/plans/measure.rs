@@ -1,19 +1,19 @@
 //! What every candidate is off and costs on the scenes of one atmosphere.
 //!
-//! Transfers are compared at eight wavelengths ([`NODES`]), since what a grid is off varies slowly with wavelength; the spectrum between them is that of
+//! Transfers are compared at eight wavelengths ([`Spectrum::Spread8`]), since what a grid is off varies slowly with wavelength; the spectrum between them is that of
 //! coarse tables at 31. With U(lambda) the latter and G(lambda_k) another transfer at the eight, G(lambda) = U(lambda) r(lambda) with r the cubic through
 //! G / U at the eight. The truth is T, of the finest polarised tables. What polarisation changes hardly depends on the grid: of all but the two coarsest grids
 //! only polarised tables are solved, and radiances, times and looks without it follow by the ratios of light tables.
 
+use super::super::shown_apart;
 use super::scenes::Set;
 use crate::clock::thread_s;
 use crate::data::Data;
-use crate::film::tone;
-use crate::plan::{Candidate, Costs, NODES, Row, SPECTRUM, Spectrum, TRANSFERS, Traits, Transfer};
+use crate::plan::{Candidate, Costs, Row, SPECTRUM, Spectrum, TRANSFERS, Traits, Transfer};
 use crate::render::{RenderError, Sky};
 use crate::sampling::Sampler;
 use crate::scene::Scene;
-use crate::spectrum::{Colour, Wavelengths, between, ciede2000};
+use crate::spectrum::{Between, Colour, Wavelengths};
 use crate::study::directions;
 use crate::transport::{Fineness, Method};
 use glam::DVec3;
@@ -69,47 +69,64 @@ impl Turned {
     }
 }
 
-/// Weights of colour, of each spectrum.
+/// Weights of colour, of each spectrum in the order of [`Spectrum::ALL`].
 struct Eyes {
-    nm: Vec<f64>,
     whole: Colour,
-    spectra: Vec<(Vec<usize>, Colour)>,
+    spectra: Vec<Eye>,
+}
+
+/// What one of them makes of values at its places of the whole.
+struct Eye {
+    places: Vec<usize>,
+    colour: Colour,
+    /// Of each wavelength of the whole, the weights of the values.
+    between: Vec<Vec<f64>>,
+}
+
+impl Eye {
+    /// All of the whole.
+    fn filled(&self, values: &[f64]) -> Vec<f64> {
+        let at = |weights: &Vec<f64>| weights.iter().zip(values).map(|(w, v)| w * v).sum();
+        self.between.iter().map(at).collect()
+    }
 }
 
 impl Eyes {
     fn new(data: &Data) -> Result<Self, RenderError> {
         let whole = Wavelengths::visible(SPECTRUM).unwrap_or_default();
-        let of = |wavelengths: &Wavelengths| Colour::new(&data.sun, &data.observer, wavelengths);
-        let spectra = Spectrum::ALL.into_iter().map(|one| Ok((one.places(), of(&one.wavelengths())?)));
-        Ok(Self { nm: whole.nm().to_vec(), whole: of(&whole)?, spectra: spectra.collect::<Result<_, RenderError>>()? })
+        let ozone = &data.ozone_cross_section;
+        let of = |wavelengths: &Wavelengths| Colour::new(&data.sun, &data.observer, ozone, wavelengths);
+        let eye = |one: Spectrum| {
+            let wavelengths = one.wavelengths();
+            let between = Between::new(ozone, wavelengths.nm())?;
+            let between = whole.nm().iter().map(|&nm| between.weights(nm)).collect::<Result<_, _>>()?;
+            Ok(Eye { places: one.places(), colour: of(&wavelengths)?, between })
+        };
+        let spectra = Spectrum::ALL.into_iter().map(eye).collect::<Result<_, RenderError>>()?;
+        Ok(Self { whole: of(&whole)?, spectra })
     }
 
-    /// Values at some places of the spectrum, at all of it.
-    fn filled(&self, places: &[usize], values: &[f64]) -> Vec<f64> {
-        let nodes: Vec<f64> = places.iter().map(|&i| self.nm[i]).collect();
-        let at = |&nm: &f64| {
-            let (first, weights) = between(&nodes, nm);
-            weights.iter().zip(&values[first..]).map(|(w, v)| w * v).sum()
-        };
-        self.nm.iter().map(at).collect()
+    fn eye(&self, spectrum: Spectrum) -> &Eye {
+        &self.spectra[spectrum as usize]
     }
 
     /// A transfer's factors at the whole spectrum, from those at the eight.
     fn whole(&self, usual: &Factors, eight: &Factors) -> Factors {
+        let at_eight = self.eye(Spectrum::Spread8);
         let one = |(usual, eight): (&Vec<f64>, &Vec<f64>)| {
             let ratio = |(&place, &value): (&usize, &f64)| if usual[place] > 0.0 { value / usual[place] } else { 0.0 };
-            let ratios: Vec<f64> = NODES.iter().zip(eight).map(ratio).collect();
-            usual.iter().zip(self.filled(&NODES, &ratios)).map(|(u, r)| u * r).collect()
+            let ratios: Vec<f64> = at_eight.places.iter().zip(eight).map(ratio).collect();
+            usual.iter().zip(at_eight.filled(&ratios)).map(|(u, r)| u * r).collect()
         };
         usual.iter().zip(eight).map(one).collect()
     }
 
     /// What a transfer at one of the spectra is off: radiance, luminance, colour.
-    fn errors(&self, truth: &Factors, found: &Factors, spectrum: usize) -> [f64; 3] {
-        let (places, colour) = &self.spectra[spectrum];
+    fn errors(&self, truth: &Factors, found: &Factors, spectrum: Spectrum) -> [f64; 3] {
+        let eye = self.eye(spectrum);
         let count = truth.len() as f64;
-        let few: Factors = found.iter().map(|factors| places.iter().map(|&i| factors[i]).collect()).collect();
-        let filled: Factors = few.iter().map(|factors| self.filled(places, factors)).collect();
+        let few: Factors = found.iter().map(|factors| eye.places.iter().map(|&i| factors[i]).collect()).collect();
+        let filled: Factors = few.iter().map(|factors| eye.filled(factors)).collect();
         let mut radiance = 0.0;
         let kept = Spectrum::Even16.places();
         for &j in &kept {
@@ -118,13 +135,9 @@ impl Eyes {
             radiance += square / (mean * mean) / kept.len() as f64;
         }
         let right: Vec<[f64; 3]> = truth.iter().map(|factors| self.whole.xyz(factors)).collect();
-        let seen: Vec<[f64; 3]> = few.iter().map(|factors| colour.xyz(factors)).collect();
-        let mean = right.iter().map(|xyz| xyz[1]).sum::<f64>() / count;
-        let luminance = right.iter().zip(&seen).map(|(r, s)| (r[1] - s[1]).powi(2)).sum::<f64>() / count;
-        let white = tone::automatic_white(&right.iter().map(|xyz| xyz[1]).collect::<Vec<_>>());
-        let shown = |colour: &[f64; 3]| tone::displayed(*colour, white);
-        let difference = right.iter().zip(&seen).map(|(r, s)| ciede2000(shown(r), shown(s)).powi(2));
-        [radiance.sqrt(), luminance.sqrt() / mean, (difference.sum::<f64>() / count).sqrt()]
+        let seen: Vec<[f64; 3]> = few.iter().map(|factors| eye.colour.xyz(factors)).collect();
+        let [luminance, colour] = shown_apart(&right, &seen);
+        [radiance.sqrt(), luminance, colour]
     }
 }
 
@@ -149,7 +162,7 @@ pub(super) fn measure(
     step: &dyn Fn(f64),
 ) -> Result<Vec<Row>, RenderError> {
     let eyes = Eyes::new(data)?;
-    let eight = Spectrum::Even8.wavelengths();
+    let eight = Spectrum::Spread8.wavelengths();
     let at = |transfer: Transfer, wavelengths: &Wavelengths| {
         Turned::new(data, &Scene { wavelengths_nm: wavelengths.clone(), ..transfer.of(&scenes[0]) })
     };
@@ -199,7 +212,7 @@ pub(super) fn measure(
             };
             solve_look_s[i] = times;
             let seen = eyes.whole(&detail, &seen);
-            errors.extend((0..Spectrum::ALL.len()).map(|spectrum| eyes.errors(&right, &seen, spectrum)));
+            errors.extend(Spectrum::ALL.into_iter().map(|spectrum| eyes.errors(&right, &seen, spectrum)));
         }
         let [coarse_solve_s, coarse_look_s] = solve_look_s[table(Fineness::Coarse, false).index()];
         let light = table(Fineness::Light, false).index();

@@ -145,7 +145,12 @@ fn of_air(data: &Data, air: &Air, (depth, size): (f64, Size), suns: &[f64]) -> R
         .filter_map(|method| Some((method, cheap(method)?)))
         .collect();
     let columns = Columns::new(medium, SHAPE, Tolerance::RENDER);
-    let colour = Colour::new(&data.sun, &data.observer, &Wavelengths::visible(WAVELENGTHS).map_err(SceneError::from)?)?;
+    let colour = Colour::new(
+        &data.sun,
+        &data.observer,
+        &data.ozone_cross_section,
+        &Wavelengths::visible(WAVELENGTHS).map_err(SceneError::from)?,
+    )?;
     let mut cells = Vec::new();
     for &elevation in suns {
         let sun = towards(90.0 - elevation, 0.0);
