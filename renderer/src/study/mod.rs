@@ -48,6 +48,15 @@ fn shown_apart(right: &[[f64; 3]], seen: &[[f64; 3]]) -> [f64; 2] {
     [luminance.sqrt() / mean, colour.sqrt()]
 }
 
+/// The cubic through the four nearest of at least four nodes, constant beyond their ends: the first of them, and their weights.
+fn cubic(nodes: &[f64], x: f64) -> (usize, [f64; 4]) {
+    let x = x.clamp(nodes[0], nodes[nodes.len() - 1]);
+    let first = nodes.partition_point(|&node| node <= x).saturating_sub(2).min(nodes.len() - 4);
+    let near = &nodes[first..first + 4];
+    let weight = |i: usize| (0..4).filter(|&j| j != i).map(|j| (x - near[j]) / (near[i] - near[j])).product();
+    (first, std::array::from_fn(weight))
+}
+
 /// Hands 0 to `count` to `work`, `threads` at a time, each in a pool of one thread, so that every time is that of one core.
 ///
 /// # Errors
@@ -110,5 +119,23 @@ impl Chart {
             let _ = writeln!(csv, "\"{panel}\",\"{curve}\",{x:.6e},{y:.3e}");
         }
         csv
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cubics_are_met() {
+        let nodes: Vec<f64> = (0..7).map(f64::from).collect();
+        let value = |x: f64| 1.0 + x * (2.0 - x * (3.0 - 0.5 * x));
+        for x in [0.0, 0.4, 2.5, 5.9, 6.0] {
+            let (first, weights) = cubic(&nodes, x);
+            let found: f64 = weights.iter().zip(&nodes[first..]).map(|(w, node)| w * value(*node)).sum();
+            // Rounding only.
+            assert!((found - value(x)).abs() < 1e-12, "{found} at {x}");
+        }
+        assert_eq!(cubic(&nodes, 9.0), cubic(&nodes, 6.0));
     }
 }

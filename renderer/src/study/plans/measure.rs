@@ -5,7 +5,7 @@
 //! G / U at the eight. The truth is T, of the finest polarised tables. What polarisation changes hardly depends on the grid: of all but the two coarsest grids
 //! only polarised tables are solved, and radiances, times and looks without it follow by the ratios of light tables.
 
-use super::super::shown_apart;
+use super::super::{cubic, shown_apart};
 use super::scenes::Set;
 use crate::clock::thread_s;
 use crate::data::Data;
@@ -72,6 +72,8 @@ impl Turned {
 /// Weights of colour, of each spectrum in the order of [`Spectrum::ALL`].
 struct Eyes {
     whole: Colour,
+    /// Of each wavelength of the whole, the cubic through ratios at the eight.
+    ratios: Vec<(usize, [f64; 4])>,
     spectra: Vec<Eye>,
 }
 
@@ -103,7 +105,9 @@ impl Eyes {
             Ok(Eye { places: one.places(), colour: of(&wavelengths)?, between })
         };
         let spectra = Spectrum::ALL.into_iter().map(eye).collect::<Result<_, RenderError>>()?;
-        Ok(Self { whole: of(&whole)?, spectra })
+        let eight = Spectrum::Spread8.wavelengths();
+        let ratios = whole.nm().iter().map(|&nm| cubic(eight.nm(), nm)).collect();
+        Ok(Self { whole: of(&whole)?, ratios, spectra })
     }
 
     fn eye(&self, spectrum: Spectrum) -> &Eye {
@@ -112,11 +116,14 @@ impl Eyes {
 
     /// A transfer's factors at the whole spectrum, from those at the eight.
     fn whole(&self, usual: &Factors, eight: &Factors) -> Factors {
-        let at_eight = self.eye(Spectrum::Spread8);
+        let places = &self.eye(Spectrum::Spread8).places;
         let one = |(usual, eight): (&Vec<f64>, &Vec<f64>)| {
             let ratio = |(&place, &value): (&usize, &f64)| if usual[place] > 0.0 { value / usual[place] } else { 0.0 };
-            let ratios: Vec<f64> = at_eight.places.iter().zip(eight).map(ratio).collect();
-            usual.iter().zip(at_eight.filled(&ratios)).map(|(u, r)| u * r).collect()
+            let ratios: Vec<f64> = places.iter().zip(eight).map(ratio).collect();
+            let at = |(u, (first, weights)): (&f64, &(usize, [f64; 4]))| {
+                u * weights.iter().zip(&ratios[*first..]).map(|(w, r)| w * r).sum::<f64>()
+            };
+            usual.iter().zip(&self.ratios).map(at).collect()
         };
         usual.iter().zip(eight).map(one).collect()
     }
