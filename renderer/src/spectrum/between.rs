@@ -2,6 +2,7 @@
 
 use crate::cholesky::Cholesky;
 use tables::TableError;
+use tables::units::DOBSON_UNIT_M2;
 use tables::views::OzoneCrossSection;
 
 /// Radiance factors of all wavelengths from those of a few: the linear unbiased estimate with the least mean square error, for spectra of the covariance
@@ -27,7 +28,7 @@ use tables::views::OzoneCrossSection;
 ///
 /// Where a list has wavelengths close together and a wide gap beside them, spectra of that covariance would follow from differences of the close ones, and
 /// light that is not of it would be off by many times its size. eta is then raised until the weights in the middle of the widest gap are together at most
-/// twelve times their sum (sixteen even wavelengths: ten times).
+/// twelve times their sum.
 #[derive(Debug, Clone)]
 pub struct Between<'a> {
     ozone: &'a OzoneCrossSection,
@@ -43,16 +44,14 @@ const POWERS: [f64; 4] = [-2.0, 0.0, 2.0, 4.0];
 /// N in Dobson units: none, that of an overhead sun, of low ones, of twilight.
 const OZONE_DU: [f64; 5] = [0.0, 300.0, 1e3, 3e3, 8e3];
 
-/// Molecules in m^2 of a Dobson unit.
-const PER_M2: f64 = 2.686_8e20;
-
 /// Temperature in K of the air that has most ozone.
 const TEMPERATURE_K: f64 = 223.0;
 
 /// m, in vertical columns of air.
 const AIR: [f64; 4] = [0.0, 1.0, 4.0, 16.0];
 
-/// tau at 550 nm and how it goes with wavelength (Bucholtz 1995, table 3 and equation 8).
+/// tau at 550 nm, and the power of u by which it goes: within 1.2 % of what receipts state of molecules to 120 km from 380 to 780 nm (0.446, at 550 nm
+/// 0.0971, 0.0235).
 const AIR_DEPTH: f64 = 0.0975;
 const AIR_POWER: f64 = 4.08;
 
@@ -88,7 +87,7 @@ impl Shapes {
         Ok(Self {
             nm,
             powers: POWERS.map(|p| u.powf(p)),
-            ozone: OZONE_DU.map(|n| (-n * PER_M2 * sigma).exp()),
+            ozone: OZONE_DU.map(|n| (-n * DOBSON_UNIT_M2 * sigma).exp()),
             air: AIR.map(|m| (-m * tau).exp()),
         })
     }
@@ -219,7 +218,7 @@ mod tests {
         let twilight = |nm: f64| {
             let u = MIDDLE_NM / nm;
             let sigma = ozone.cross_section_m2(nm, 235.0).expect("in range");
-            u.powf(3.0) * (-5000.0 * PER_M2 * sigma - 2.5 * AIR_DEPTH * u.powf(4.0)).exp()
+            u.powf(3.0) * (-5000.0 * DOBSON_UNIT_M2 * sigma - 2.5 * AIR_DEPTH * u.powf(4.0)).exp()
         };
         let (eight, sixteen) = (worst(8, twilight), worst(16, twilight));
         assert!(eight < 0.02 && sixteen < 0.003, "{eight} {sixteen}");

@@ -133,6 +133,7 @@ mod tests {
     use super::*;
     use crate::data::Data;
     use std::path::Path;
+    use tables::units::DOBSON_UNIT_M2;
 
     fn data() -> Data {
         Data::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../data")).expect("tables")
@@ -176,7 +177,7 @@ mod tests {
         let data = data();
         let twilight = |nm: f64| {
             let sigma = data.ozone_cross_section.cross_section_m2(nm, 230.0).expect("in range");
-            (nm / 550.0).powi(-4) * (-4000.0 * 2.687e20 * sigma - 3.0 * 0.0975 * (nm / 550.0).powi(-4)).exp()
+            (nm / 550.0).powi(-4) * (-4000.0 * DOBSON_UNIT_M2 * sigma - 3.0 * 0.0975 * (nm / 550.0).powi(-4)).exp()
         };
         let exact = integrated(&data, twilight);
         // Found: 0.10 and 0.017 %. (Cubics between sixteen are off by 1.9 % of luminance in such skies: `airlight study wavelengths`.)

@@ -130,7 +130,7 @@ pub fn make(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
     }
     Ok(Chart {
         title: "Colours from few wavelengths: what they are off in five atmospheres".to_owned(),
-        axes: ["wavelengths", "rms error"],
+        axes: ["number of wavelengths", "rms error / % or CIEDE2000"],
         points,
     })
 }

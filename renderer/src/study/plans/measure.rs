@@ -5,7 +5,6 @@
 //! G / U at the eight. The truth is T, of the finest polarised tables. What polarisation changes hardly depends on the grid: of all but the two coarsest grids
 //! only polarised tables are solved, and radiances, times and looks without it follow by the ratios of light tables.
 
-use super::super::{cubic, shown_apart};
 use super::scenes::Set;
 use crate::clock::thread_s;
 use crate::data::Data;
@@ -14,7 +13,7 @@ use crate::render::{RenderError, Sky};
 use crate::sampling::Sampler;
 use crate::scene::Scene;
 use crate::spectrum::{Between, Colour, Wavelengths};
-use crate::study::directions;
+use crate::study::{cubic, directions, shown_apart};
 use crate::transport::{Fineness, Method};
 use glam::DVec3;
 
