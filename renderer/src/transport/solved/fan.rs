@@ -1,7 +1,7 @@
 //! One fan of a certificate: rays in all directions from points of a line of sight, and from points of those.
 
 use super::certify::{Certificate, Fan, View};
-use super::guide::{Local, Way};
+use super::guide::{Bins, DIRECTIONS, Local, Way};
 use super::line::MOST_SPECIES;
 use super::sources::Source;
 use super::tabled::Tabled;
@@ -99,8 +99,11 @@ impl<R: Tabled, const L: usize> Estimate<'_, R, L> {
                 Some((_, path, depth)) => (fan.further, (path << 10) | depth),
             };
             let share = 1.0 / f64::from(points);
-            let kept = now.as_ref().map(|(one, ..)| {
-                (self.vertex(one.place, one.direction, one.frame), one.weight.map(|weight| weight * share))
+            let vertex = now.as_ref().map(|(one, ..)| self.vertex(one.place, one.direction, one.frame));
+            let onto = vertex.as_ref().map(|vertex| self.onto(vertex));
+            let kept = now.as_ref().zip(vertex.zip(onto.as_ref())).map(|((one, ..), (vertex, onto))| {
+                let vertex = Vertex { guide: vertex.guide.with(onto), ..vertex };
+                (vertex, one.weight.map(|weight| weight * share))
             });
             reached.clear();
             for point in 0..points {
@@ -158,14 +161,25 @@ impl<R: Tabled, const L: usize> Estimate<'_, R, L> {
             let total = view.chord.total();
             let weight = exp_minus(total).map(|through| through / view.ground);
             let foot = view.chord.foot(self.certificate.from, view.direction);
-            return (self.vertex(foot, None, view.frame), weight);
+            let vertex = self.vertex(foot, None, view.frame);
+            let guide = view.foot.as_ref().map_or(vertex.guide, |onto| vertex.guide.with(onto));
+            return (Vertex { guide, ..vertex }, weight);
         }
         let (v, density, _) = view.bins.sample((u - view.ground) / (1.0 - view.ground));
         let (s, stretch) = view.way.at(&view.chord, v);
         let factor = stretch / (density * (1.0 - view.ground));
         let weight = exp_minus(view.chord.point(s).depth).map(|through| through * factor);
         let place = view.chord.place(self.certificate.from, view.direction, s);
-        (self.vertex(place, Some(view.direction), view.frame), weight)
+        let vertex = self.vertex(place, Some(view.direction), view.frame);
+        let onto = view.onto.iter().find(|(entry, _)| *entry == vertex.guide.entry);
+        let guide = onto.map_or(vertex.guide, |(_, onto)| vertex.guide.with(onto));
+        (Vertex { guide, ..vertex }, weight)
+    }
+
+    /// Densities of the light that is scattered or reflected on at a vertex.
+    #[inline(always)]
+    fn onto(&self, Vertex { direction, scattering, guide, .. }: &Vertex<'_, R, L>) -> Bins<DIRECTIONS> {
+        direction.map_or_else(|| guide.reflected(), |ahead| self.certificate.guide.scattered(guide, scattering, ahead))
     }
 
     #[inline(always)]
@@ -184,7 +198,7 @@ impl<R: Tabled, const L: usize> Estimate<'_, R, L> {
         let counts = |one: &Reached<R, L>, j: usize| {
             (R::intensity(&one.weight[j]) * R::radiance(&one.source.tail[j])).abs() / norm[j]
         };
-        reached.iter().map(|one| (0..L).map(|j| counts(one, j)).sum::<f64>() / L as f64).collect()
+        reached.iter().map(|one| ((0..L).map(|j| counts(one, j).powi(2)).sum::<f64>() / L as f64).sqrt()).collect()
     }
 
     /// The weight of light from a direction that was drawn with a density, without the straight ray, and its frame.

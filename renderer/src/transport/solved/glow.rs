@@ -2,7 +2,8 @@
 //!
 //! At equal steps of a [`Way`] the light that arrives is about
 //! sum_k beta_k(h) (p_k T(h, mu) + M_k(h, mu)) e^-tau ds/dv: beta_k a species' scattering coefficient and p_k its phase function of sunlight,
-//! T the sunlight that arrives, M_k what it makes of other light, tau by the extinction at the steps; each the mean over wavelengths.
+//! T the sunlight that arrives, M_k what it makes of other light, tau by the extinction at the steps; each the mean over wavelengths of a
+//! group that the air takes about as much from. Of all together light of the shortest would come from much too far away.
 
 use super::guide::{EVEN, Way};
 use super::line::MOST_SPECIES;
@@ -24,17 +25,20 @@ const LOW: f64 = 0.3;
 /// Distances.
 const DISTANCES: usize = 32;
 
-/// Light and air of a table, of which only proportions count: means over wavelengths, each by its share of a norm.
+/// Groups of wavelengths, even in the logarithm of the extinction at the ground.
+const GROUPS: usize = 2;
+
+/// Light and air of a table, of which only proportions count: sums and means over the wavelengths of each group.
 #[derive(Debug)]
 pub(super) struct Glow {
     radius: f64,
     top: f64,
-    /// [altitude][sun]
-    light: Vec<Light>,
-    /// [altitude]: extinction in m^-1.
-    extinction: Vec<f32>,
-    /// [altitude][species]: scattering coefficients in m^-1.
-    scattering: Vec<f32>,
+    /// [altitude][sun]: sums, by shares of a norm.
+    light: Vec<[Light; GROUPS]>,
+    /// [altitude]: mean extinction in m^-1.
+    extinction: Vec<[f32; GROUPS]>,
+    /// [altitude][species]: mean scattering coefficients in m^-1.
+    scattering: Vec<[f32; GROUPS]>,
     /// Which species are molecules.
     molecular: Vec<bool>,
 }
@@ -82,6 +86,16 @@ impl Looked {
     }
 }
 
+/// The group of each wavelength, by its extinction.
+fn groups<const L: usize>(extinction: &[f64; L]) -> [usize; L] {
+    let logarithms = extinction.map(|one| one.max(1e-300).ln());
+    let (least, most) = logarithms
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &one| (least.min(one), most.max(one)));
+    let width = (most - least).max(1e-9) / GROUPS as f64;
+    logarithms.map(|one| (((one - least) / width) as usize).min(GROUPS - 1))
+}
+
 impl Glow {
     pub(super) fn new<const L: usize>(sources: &Sources<'_, L>, norm: &[f64; L]) -> Self {
         let solved = sources.solved;
@@ -90,7 +104,18 @@ impl Glow {
         let top = levels[levels.len() - 1];
         // Not quite the top, where there is nothing.
         let altitude = |i: usize, count: usize| (top * (i as f64 / (count - 1) as f64).powi(2)).min(0.999 * top);
-        let mean = |of: &dyn Fn(usize) -> f64| ((0..L).map(of).sum::<f64>() / L as f64) as f32;
+        let medium = &solved.optics.medium;
+        let groups = groups(&medium.local_at(0.0).extinction);
+        let sum = |of: &dyn Fn(usize) -> f64| -> [f64; GROUPS] {
+            let mut sums = [0.0; GROUPS];
+            (0..L).for_each(|j| sums[groups[j]] += of(j));
+            sums
+        };
+        let counts = sum(&|_| 1.0).map(|count| count.max(1.0));
+        let mean = |of: &dyn Fn(usize) -> f64| -> [f32; GROUPS] {
+            let sums = sum(of);
+            std::array::from_fn(|g| (sums[g] / counts[g]) as f32)
+        };
         let light = |row: usize| {
             let place = Place::above(altitude(row, ROWS));
             let here = sources.scattering(place.altitude_m);
@@ -107,21 +132,21 @@ impl Glow {
                     let mut one = [[0.0; L]; MOST_SPECIES];
                     one[k] = [1.0; L];
                     let seen = sources.diffuse::<Scalar>(place, (direction, ()), sun, &one, &mut harmonics);
-                    mean(&|j| seen[j].max(0.0) / norm[j])
+                    sum(&|j| seen[j].max(0.0) / norm[j])
                 };
-                let mut light = Light::default();
                 let arrives = sources.columns().transmittance(place, sun).unwrap_or([0.0; L]);
-                light.sun = mean(&|j| arrives[j] / norm[j]);
-                light.molecular = molecules.map_or(0.0, |k| scattered(k, DVec3::Y));
-                if let Some(k) = commonest {
-                    light.particles =
-                        [DVec3::X, DVec3::Y, -DVec3::X, DVec3::Z, -DVec3::Z].map(|look| scattered(k, look));
-                }
-                light
+                let arrives = sum(&|j| arrives[j] / norm[j]);
+                let molecular = molecules.map_or([0.0; GROUPS], |k| scattered(k, DVec3::Y));
+                let looks = [DVec3::X, DVec3::Y, -DVec3::X, DVec3::Z, -DVec3::Z];
+                let particles = looks.map(|look| commonest.map_or([0.0; GROUPS], |k| scattered(k, look)));
+                std::array::from_fn(|g| Light {
+                    sun: arrives[g] as f32,
+                    molecular: molecular[g] as f32,
+                    particles: particles.map(|look| look[g] as f32),
+                })
             };
             (0..SUNS).map(of_sun).collect::<Vec<_>>()
         };
-        let medium = &solved.optics.medium;
         let layers = || (0..LAYERS).map(|layer| altitude(layer, LAYERS));
         let extinction = |h: f64| {
             let extinction = medium.local_at(h).extinction;
@@ -172,28 +197,31 @@ impl Glow {
             nodes[i] = row * SUNS as i32 + (sunward * (0.5 * (SUNS - 1) as f32) + 0.5) as i32;
             layers[i] = (root * (LAYERS - 1) as f32 + 0.5) as i32;
         }
-        let (mut lights, mut depths) = ([0.0; N], [0.0; N]);
-        let mut depth = 0.0;
+        let (mut lights, mut depths) = ([[0.0; N]; GROUPS], [[0.0; N]; GROUPS]);
+        let mut depth = [0.0; GROUPS];
         for i in 0..N {
-            let Light { sun, molecular, particles } = self.light[nodes[i] as usize];
-            let particles: f32 = (0..LOOKS).map(|k| looked.looks[k] * particles[k]).sum();
             let layer = layers[i] as usize;
             let species = self.molecular.len();
-            let mut source = 0.0;
-            for k in 0..species {
-                let other = if self.molecular[k] { molecular } else { particles };
-                source += self.scattering[layer * species + k] * (looked.phases[k] * sun + other);
+            for (g, light) in self.light[nodes[i] as usize].iter().enumerate() {
+                let particles: f32 = (0..LOOKS).map(|k| looked.looks[k] * light.particles[k]).sum();
+                let mut source = 0.0;
+                for k in 0..species {
+                    let other = if self.molecular[k] { light.molecular } else { particles };
+                    source += self.scattering[layer * species + k][g] * (looked.phases[k] * light.sun + other);
+                }
+                lights[g][i] = source * steps[i];
+                let passed = self.extinction[layer][g] * steps[i];
+                depths[g][i] = depth[g] + 0.5 * passed;
+                depth[g] += passed;
             }
-            lights[i] = source * steps[i];
-            let passed = self.extinction[layer] * steps[i];
-            depths[i] = depth + 0.5 * passed;
-            depth += passed;
         }
         // Not less than exp(-tau): (1 + tau / 16)^-16.
         let mut masses = [0.0; N];
-        for i in 0..N {
-            let through = 1.0 / (1.0 + depths[i] / 16.0);
-            masses[i] = lights[i] * through.powi(16);
+        for (lights, depths) in lights.iter().zip(&depths) {
+            for i in 0..N {
+                let through = 1.0 / (1.0 + depths[i] / 16.0);
+                masses[i] += lights[i] * through.powi(16);
+            }
         }
         // Where a layer ends within a step its middle says too little.
         let mut smooth = [0.0; N];

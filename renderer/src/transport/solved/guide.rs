@@ -3,6 +3,7 @@
 use super::Solved;
 use super::glow::Glow;
 use super::line::MOST_SPECIES;
+use super::lobes::Lobes;
 use super::sources::Sources;
 use crate::atmosphere::Chord;
 use crate::geometry::Place;
@@ -17,10 +18,13 @@ use std::f64::consts::{PI, TAU};
 const ZENITHS: [usize; 3] = [10, 4, 6];
 const ALL_ZENITHS: usize = ZENITHS[0] + ZENITHS[1] + ZENITHS[2];
 
-/// Azimuths from the sun's to the opposite one; both sides are alike.
-const AZIMUTHS: usize = 8;
+/// Azimuths from the sun's all round.
+const AZIMUTHS: usize = 16;
 
-const DIRECTIONS: usize = ALL_ZENITHS * AZIMUTHS;
+pub(super) const DIRECTIONS: usize = ALL_ZENITHS * AZIMUTHS;
+
+/// The middle of a bin by its measure.
+const MIDDLE: [f64; 2] = [0.5, 0.5];
 
 /// Distances at which light in a direction is looked at.
 const DISTANCES: usize = 16;
@@ -83,6 +87,7 @@ pub(super) struct Guide {
     suns: usize,
     /// [sun][level]: directions in which a place sees light.
     entries: Vec<Bins<DIRECTIONS>>,
+    lobes: Lobes,
     /// Where in a direction it comes from.
     pub(super) glow: Glow,
 }
@@ -126,12 +131,9 @@ impl Frame {
         let (begin, span, number, count) = self.part(bin / AZIMUTHS);
         let x = (number as f64 + zenith) / count as f64;
         let mu = (begin + span * x * x).clamp(-1.0, 1.0);
-        // Both sides of the sun.
-        let side = if azimuth < 0.5 { 1.0 } else { -1.0 };
-        let phi = ((bin % AZIMUTHS) as f64 + (2.0 * azimuth).fract()) * PI / AZIMUTHS as f64;
-        let (sin, cos) = phi.sin_cos();
+        let (sin, cos) = (((bin % AZIMUTHS) as f64 + azimuth) * TAU / AZIMUTHS as f64).sin_cos();
         let sine = ((1.0 - mu) * (1.0 + mu)).sqrt();
-        let direction = self.up * mu + self.sunward * (sine * cos) + self.across * (sine * sin * side);
+        let direction = self.up * mu + self.sunward * (sine * cos) + self.across * (sine * sin);
         (direction, 2.0 * x * span.abs() / count as f64 * TAU / AZIMUTHS as f64)
     }
 
@@ -152,7 +154,9 @@ impl Frame {
         let zenith = first + ((x * count as f64) as usize).min(count - 1);
         let (a, b) = (direction.dot(self.sunward), direction.dot(self.across));
         let cosine = a / (a * a + b * b).sqrt().max(1e-30);
-        let azimuth = ((cosine.clamp(-1.0, 1.0).acos() * AZIMUTHS as f64 / PI) as usize).min(AZIMUTHS - 1);
+        let phi = cosine.clamp(-1.0, 1.0).acos();
+        let phi = if b < 0.0 { TAU - phi } else { phi };
+        let azimuth = ((phi * AZIMUTHS as f64 / TAU) as usize).min(AZIMUTHS - 1);
         (zenith * AZIMUTHS + azimuth, 2.0 * x * span / count as f64 * TAU / AZIMUTHS as f64)
     }
 }
@@ -160,6 +164,8 @@ impl Frame {
 /// What a [`Guide`] says at one place.
 #[derive(Clone, Copy)]
 pub(super) struct Local<'a> {
+    /// Which of the guide's.
+    pub(super) entry: usize,
     directions: &'a Bins<DIRECTIONS>,
     frame: Frame,
 }
@@ -184,7 +190,7 @@ impl Guide {
                 vectorised::<L, _>(Survey { sources, place, sun, norm })
             })
             .collect();
-        Self { first_sun, suns, entries, glow: Glow::new(sources, norm) }
+        Self { first_sun, suns, entries, lobes: Lobes::new(&sources.optics().species), glow: Glow::new(sources, norm) }
     }
 
     /// At a place, with the sun there.
@@ -196,10 +202,21 @@ impl Guide {
         let above = levels.partition_point(|&level| level < place.altitude_m).clamp(1, levels.len() - 1);
         let nearer = place.altitude_m - levels[above - 1] < levels[above] - place.altitude_m;
         let level = if nearer { above - 1 } else { above };
-        Local {
-            directions: &self.entries[at * levels.len() + level],
-            frame: Frame::new(place, sun, solved.grid.radius),
-        }
+        let entry = at * levels.len() + level;
+        Local { entry, directions: &self.entries[entry], frame: Frame::new(place, sun, solved.grid.radius) }
+    }
+
+    /// Densities of light that is scattered at a place into a direction looked `ahead` in, where the species have these scattering
+    /// coefficients.
+    #[inline(always)]
+    pub(super) fn scattered<const L: usize>(
+        &self,
+        local: &Local<'_>,
+        scattering: &[[f64; L]; MOST_SPECIES],
+        ahead: DVec3,
+    ) -> Bins<DIRECTIONS> {
+        let scattering = scattering.map(|one| one.iter().sum::<f64>() as f32);
+        local.times(|from| self.lobes.scattered(&scattering, ahead.dot(from)))
     }
 }
 
@@ -221,9 +238,14 @@ impl<const L: usize> NullaryFnOnce for Survey<'_, L> {
         let mut harmonics = Vec::new();
         let mut masses = [0.0; DIRECTIONS];
         let counts = |light: &[f64; L]| -> f64 { (0..L).map(|j| light[j] / norm[j]).sum::<f64>().max(0.0) };
-        for (bin, mass) in masses.iter_mut().enumerate() {
-            // The middle of the bin by its measure.
-            let (direction, width) = frame.direction(bin, [0.5, 0.25]);
+        for bin in 0..DIRECTIONS {
+            // The other side of the sun is like this one.
+            let (row, azimuth) = (bin - bin % AZIMUTHS, bin % AZIMUTHS);
+            if 2 * azimuth >= AZIMUTHS {
+                masses[bin] = masses[row + AZIMUTHS - 1 - azimuth];
+                continue;
+            }
+            let (direction, width) = frame.direction(bin, MIDDLE);
             let Some(chord) = sources.columns().chord(place, direction) else { continue };
             let way = Way::new(&chord, sources.solved.grid.radius);
             let mut phases = [[0.0; L]; MOST_SPECIES];
@@ -254,13 +276,31 @@ impl<const L: usize> NullaryFnOnce for Survey<'_, L> {
                 let total = chord.total();
                 seen += counts(&std::array::from_fn(|j| (-total[j]).exp() * source.total[j]));
             }
-            *mass = seen * width;
+            masses[bin] = seen * width;
         }
         Bins::new(masses)
     }
 }
 
 impl Local<'_> {
+    /// Densities of light that is reflected by a level ground there.
+    #[inline(always)]
+    pub(super) fn reflected(&self) -> Bins<DIRECTIONS> {
+        self.times(|from| from.dot(self.frame.up).max(0.0))
+    }
+
+    /// Densities in proportion to these times another number.
+    #[inline(always)]
+    fn times(&self, other: impl Fn(DVec3) -> f64) -> Bins<DIRECTIONS> {
+        Bins::new(std::array::from_fn(|bin| self.directions.density(bin) * other(self.frame.direction(bin, MIDDLE).0)))
+    }
+
+    /// With other densities.
+    #[inline(always)]
+    pub(super) fn with<'b>(&self, directions: &'b Bins<DIRECTIONS>) -> Local<'b> {
+        Local { directions, ..*self }
+    }
+
     /// Draws a direction; its density in sr^-1, too.
     #[inline(always)]
     pub(super) fn sample(&self, [u, v]: [f64; 2]) -> (DVec3, f64) {

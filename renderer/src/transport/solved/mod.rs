@@ -28,6 +28,7 @@ mod guide;
 mod harmonics;
 mod line;
 mod linear;
+mod lobes;
 mod mix;
 mod nodes;
 mod onward;
