@@ -23,6 +23,11 @@ impl Cholesky {
         Self { rows }
     }
 
+    /// Rows.
+    pub(crate) fn count(&self) -> usize {
+        self.rows.len()
+    }
+
     /// L^-1 b.
     pub(crate) fn forwards(&self, b: &[f64]) -> Vec<f64> {
         let mut x: Vec<f64> = Vec::with_capacity(b.len());

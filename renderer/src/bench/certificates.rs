@@ -7,7 +7,7 @@ use crate::geometry::{Place, Shape};
 use crate::polarisation::{Frame, Stokes};
 use crate::render::RenderError;
 use crate::sampling::spiral;
-use crate::transport::{Certificate, Fan, Resolution, Solved};
+use crate::transport::{Certificate, Resolution, Solved};
 use glam::DVec3;
 use std::time::Instant;
 use tables::units::EARTH_RADIUS_M;
@@ -78,10 +78,10 @@ fn add(
     let mut least = [f64::INFINITY; 2];
     for round in 0..ROUNDS {
         let start = Instant::now();
-        let one = scalar.radiance(direction, Fan::USUAL, FANS, round, pixel);
+        let one = scalar.radiance(direction, scalar.fan(), FANS, round, pixel);
         let middle = Instant::now();
         let of = |seen: &Stokes| [seen.i, seen.q, seen.u];
-        let other = polarised.stokes((direction, frame), of, (Fan::USUAL, FANS), (round, pixel));
+        let other = polarised.stokes((direction, frame), of, (polarised.fan(), FANS), (round, pixel));
         let seconds = [middle - start, middle.elapsed()].map(|time| time.as_secs_f64() / f64::from(FANS));
         least = [least[0].min(seconds[0]), least[1].min(seconds[1])];
         for (noise, found) in report.noise.iter_mut().zip(std::iter::once(one).chain(other.into_iter().flatten())) {

@@ -361,7 +361,7 @@ fn describe_left_out(left_out: &Result<LeftOut, String>, followed: bool) {
 /// What a certificate found, with the sun in that direction, of light that was `filtered` or not.
 fn describe_verdict(verdict: &Verdict, sun: DVec3, filtered: bool) {
     let Verdict { asked, ref errors, size: (directions, fans) } = *verdict;
-    let Some(Residual { rms, most, mean, worst, worst_direction }) = errors.first().copied() else { return };
+    let Some(Residual { rms, most, mean, worst, worst_direction, .. }) = errors.first().copied() else { return };
     let (high, away) = (worst_direction.z.asin().to_degrees(), worst_direction.angle_between(sun).to_degrees());
     let signed = |share: f64| format!("{}{}", if share < 0.0 { "-" } else { "+" }, percent(share.abs()));
     let stokes = errors.len() > 1;

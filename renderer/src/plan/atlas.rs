@@ -1,7 +1,7 @@
 //! The atlas of differences: what leaving each part of the model out changes, on scenes from day to twilight, from clear air to haze, and from space.
 
 use super::Traits;
-use super::predict::likeness;
+use super::evidence::likeness;
 use std::fmt::Write;
 use tables::views::Biome;
 

@@ -5,6 +5,7 @@
 //! plus the share of noise on the diagonal, at another point the mean is m + k^T K^-1 (y - m) and the variance s^2 (k(x, x) - k^T K^-1 k).
 
 use crate::cholesky::Cholesky;
+use std::ops::Range;
 
 /// A covariance of any two of the points, factorised.
 #[derive(Debug, Clone)]
@@ -28,11 +29,42 @@ impl Kriging {
     pub(super) fn variance(&self, k: &[f64]) -> f64 {
         (1.0 + NOISE - self.0.forwards(k).iter().map(|x| x * x).sum::<f64>()).max(NOISE)
     }
+
+    /// Some of the points, predicted from the others.
+    pub(super) fn without(&self, points: Range<usize>) -> Without {
+        let unit = |count: usize, i: usize| (0..count).map(|k| f64::from(u8::from(k == i))).collect::<Vec<f64>>();
+        let columns: Vec<_> = points.clone().map(|i| self.solve(&unit(self.0.count(), i))).collect();
+        let block = Cholesky::new(points.len(), |i, j| columns[i][points.start + j]);
+        let variances = (0..points.len()).map(|i| block.solve(&unit(points.len(), i))[i]).collect();
+        Without { points, block, variances }
+    }
 }
 
-/// Mean of the values, K^-1 (y - m), and s.
+/// Points left out together: with their block B of K^-1 the others predict y - B^-1 (K^-1 (y - m)), of the variance s^2 (B^-1)_ii. Of a
+/// single point that is equation 5.12; m and s are those of all.
+#[derive(Debug, Clone)]
+pub(super) struct Without {
+    pub(super) points: Range<usize>,
+    /// B.
+    block: Cholesky,
+    /// The diagonal of B^-1: what the others leave of a variance of 1.
+    pub(super) variances: Vec<f64>,
+}
+
+impl Without {
+    /// Mean and standard deviation at each of the points.
+    pub(super) fn predicted(&self, fit: &Fit) -> Vec<(f64, f64)> {
+        let off = self.block.solve(&fit.weights[self.points.clone()]);
+        let values = &fit.values[self.points.clone()];
+        let means = values.iter().zip(off).map(|(value, off)| value - off);
+        means.zip(&self.variances).map(|(mean, variance)| (mean, fit.scale * variance.sqrt())).collect()
+    }
+}
+
+/// Values y, their mean m, K^-1 (y - m), and s.
 #[derive(Debug, Clone)]
 pub(super) struct Fit {
+    pub(super) values: Vec<f64>,
     mean: f64,
     weights: Vec<f64>,
     scale: f64,
@@ -46,7 +78,7 @@ impl Fit {
         let off: Vec<f64> = values.iter().map(|value| value - mean).collect();
         let weights = kriging.solve(&off);
         let scale = (off.iter().zip(&weights).map(|(a, b)| a * b).sum::<f64>() / count).max(1e-12).sqrt();
-        Self { mean, weights, scale }
+        Self { values: values.to_vec(), mean, weights, scale }
     }
 
     /// Mean and standard deviation where the covariances with the points are `k` and leave the `variance`.
@@ -74,5 +106,27 @@ mod tests {
         // The noise of 2 % keeps the mean off the points a little.
         assert!((at(4.0).0 - 2.0_f64.sin()).abs() < 0.03 && (at(4.5).0 - 2.25_f64.sin()).abs() < 0.03);
         assert!(at(30.0).1 > 3.0 * at(4.5).1, "{:?} {:?}", at(30.0), at(4.5));
+    }
+
+    #[test]
+    fn points_left_out_are_predicted_as_if_they_had_never_been() {
+        let points: Vec<f64> = (0..9).map(|i| f64::from(i * i) / 8.0).collect();
+        let covariance = |a: f64, b: f64| (-(a - b).abs() / 2.0).exp();
+        let values: Vec<f64> = points.iter().map(|x| x.cos()).collect();
+        let (all, left_out) = (Kriging::new(9, |i, j| covariance(points[i], points[j])), 3..6);
+        let fit = Fit::new(&all, &values);
+        let others: Vec<usize> = (0..9).filter(|i| !left_out.contains(i)).collect();
+        let few = Kriging::new(others.len(), |i, j| covariance(points[others[i]], points[others[j]]));
+        // With the mean and the scale of all.
+        let off: Vec<f64> = others.iter().map(|&i| values[i] - fit.mean).collect();
+        let fewer = Fit { values: Vec::new(), mean: fit.mean, weights: few.solve(&off), scale: fit.scale };
+        for (i, (mean, deviation)) in left_out.clone().zip(all.without(left_out).predicted(&fit)) {
+            let k: Vec<f64> = others.iter().map(|&j| covariance(points[i], points[j])).collect();
+            let right = fewer.at(&k, few.variance(&k));
+            assert!(
+                (mean - right.0).abs() < 1e-12 && (deviation - right.1).abs() < 1e-12,
+                "{mean} {deviation} {right:?}"
+            );
+        }
     }
 }

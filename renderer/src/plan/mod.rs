@@ -6,6 +6,7 @@
 
 mod atlas;
 mod candidates;
+mod evidence;
 mod kriging;
 mod measured;
 mod outside;
@@ -15,9 +16,10 @@ mod tests;
 
 pub use atlas::{Atlas, Difference};
 pub use candidates::{Candidate, SPECTRUM, Spectrum, TRANSFERS, Transfer};
+pub use evidence::{ASKED, Evidence, margins};
 pub use measured::{Costs, Measured, Row};
 pub use outside::outside;
-pub use predict::{ASKED, Evidence, Plan, Prediction, Safe, margins};
+pub use predict::{Plan, Prediction, Safe};
 
 use crate::atmosphere::Haze;
 use crate::render::Sky;
@@ -110,5 +112,11 @@ impl Traits {
             0.75 * self.albedo,
             1.05 * (self.altitude_km.min(TOP_KM) / 2.0).ln_1p(),
         ]
+    }
+
+    /// Distance to another scene in these coordinates.
+    fn distance(&self, other: &Self) -> f64 {
+        let (x, y) = (self.coordinates(), other.coordinates());
+        x.iter().zip(y).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt()
     }
 }

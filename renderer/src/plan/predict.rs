@@ -1,14 +1,11 @@
-//! From measured scenes to others: predicted errors and costs, and the choice.
+//! What is predicted of a scene, and the choice.
 
-use super::kriging::{Fit, Kriging};
-use super::measured::{Costs, Measured};
+use super::evidence::Evidence;
+use super::measured::Costs;
 use super::{Candidate, Metric, Spectrum, Traits, Transfer};
 use crate::render::PACKETS;
 use crate::scene::Scene;
 use crate::transport::{Fineness, Method};
-
-/// Errors at which margins are found and plans are judged; of colour in hundreds of units.
-pub const ASKED: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
 
 /// An error as a metric counts it: a share, or units of CIEDE2000, of which one stands for one percent.
 impl Metric {
@@ -19,25 +16,14 @@ impl Metric {
     }
 }
 
-/// Share of plans that are to meet their error where an atmosphere is left out of the measurements, and of those at each error.
-const SURE: f64 = 0.97;
-const SURE_OF_EACH: f64 = 0.95;
-
-/// Margins that are tried, in standard deviations of the prediction.
-const MARGINS: (f64, f64) = (0.0, 4.0);
-const MARGIN_STEPS: u32 = 80;
-
 /// Variance left by the measured scenes, of 1 where there is none near, above which a scene counts as outside.
 const FAR: f64 = 0.8;
-
-/// What an error or a cost below this is taken for: nothing is measured so closely.
-const LEAST: f64 = 1e-6;
 
 /// Predicted errors and costs of a scene.
 #[derive(Debug, Clone)]
 pub struct Prediction {
     /// Of each candidate and metric, the natural logarithm of the error: mean and standard deviation.
-    errors: Vec<[(f64, f64); 3]>,
+    pub(super) errors: Vec<[(f64, f64); 3]>,
     /// Costs.
     pub costs: Costs,
     /// Share of the variance that the measured scenes leave, 0 to 1.
@@ -91,131 +77,6 @@ impl Prediction {
         let (best, _) = all.min_by(|a, b| bound(a.0).total_cmp(&bound(b.0)))?;
         (self.likely(best, metric) <= asked).then_some((best, false))
     }
-}
-
-/// Measurements, made ready to predict from.
-#[derive(Debug, Clone)]
-pub struct Evidence {
-    traits: Vec<Traits>,
-    kriging: Kriging,
-    /// Of each candidate and metric, then of each cost.
-    fits: Vec<Fit>,
-    /// Of each metric.
-    margins: [f64; 3],
-}
-
-/// How alike two scenes are, 1 of equal ones: Matern's covariance of order 3/2 of their distance; less for aerosols of two kinds.
-pub(super) fn likeness(a: &Traits, b: &Traits) -> f64 {
-    const OTHER_KIND: f64 = 0.9;
-    let (x, y) = (a.coordinates(), b.coordinates());
-    let distance = (0..4).map(|i| (x[i] - y[i]).powi(2)).sum::<f64>().sqrt();
-    let r = 3.0_f64.sqrt() * distance / REACH;
-    let kind = if a.biome == b.biome { 1.0 } else { OTHER_KIND };
-    kind * (1.0 + r) * (-r).exp()
-}
-
-/// Distance in units of [`Traits::coordinates`] over which errors are alike.
-const REACH: f64 = 2.0;
-
-impl Evidence {
-    /// From measurements, with the margins that are stored with them.
-    ///
-    /// # Errors
-    /// A sentence, if there are fewer than two scenes.
-    pub fn new(measured: &Measured) -> Result<Self, String> {
-        let rows = &measured.rows;
-        if rows.len() < 2 {
-            return Err("too few measured scenes to predict from".into());
-        }
-        let traits: Vec<Traits> = rows.iter().map(|row| row.traits.clone()).collect();
-        let kriging = Kriging::new(rows.len(), |i, j| likeness(&traits[i], &traits[j]));
-        let costs = rows[0].costs.values().len();
-        let of = |value: &dyn Fn(usize) -> f64| {
-            let values: Vec<f64> = (0..rows.len()).map(|i| value(i).max(LEAST).ln()).collect();
-            Fit::new(&kriging, &values)
-        };
-        let errors = (0..3 * Candidate::COUNT).map(|k| of(&|i| rows[i].errors[k / 3][k % 3]));
-        let all: Vec<_> = rows.iter().map(|row| row.costs.values()).collect();
-        // What took less than the clock tells is taken for the mean of the others.
-        let costs = (0..costs).map(|k| {
-            let told: Vec<f64> = all.iter().map(|values| values[k]).filter(|value| *value > LEAST).collect();
-            let mean = (told.iter().map(|value| value.ln()).sum::<f64>() / told.len().max(1) as f64).exp();
-            of(&|i| if all[i][k] > LEAST { all[i][k] } else { mean })
-        });
-        let fits = errors.chain(costs).collect();
-        Ok(Self { traits, kriging, fits, margins: measured.margins })
-    }
-
-    /// Standard deviations by which a metric's predictions are raised.
-    #[must_use]
-    pub fn margin(&self, metric: Metric) -> f64 {
-        self.margins[metric as usize]
-    }
-
-    /// How many scenes were measured.
-    #[must_use]
-    pub fn scenes(&self) -> usize {
-        self.traits.len()
-    }
-
-    /// What is predicted of a scene.
-    #[must_use]
-    pub fn predict(&self, traits: &Traits) -> Prediction {
-        let k: Vec<f64> = self.traits.iter().map(|other| likeness(traits, other)).collect();
-        let variance = self.kriging.variance(&k);
-        let at = |i: usize| self.fits[i].at(&k, variance);
-        let errors = (0..Candidate::COUNT).map(|i| [at(3 * i), at(3 * i + 1), at(3 * i + 2)]).collect();
-        let first = 3 * Candidate::COUNT;
-        let mut costs = [0.0; super::measured::COSTS];
-        for (i, cost) in costs.iter_mut().enumerate() {
-            *cost = at(first + i).0.exp();
-        }
-        Prediction { errors, costs: Costs::from_values(&costs), far: variance }
-    }
-}
-
-/// Of every measured scene what the other atmospheres predict.
-fn left_out(measured: &Measured) -> Result<Vec<Prediction>, String> {
-    let mut all = Vec::with_capacity(measured.rows.len());
-    for own in measured.rows.chunk_by(|a, b| a.atmosphere == b.atmosphere) {
-        let others = measured.rows.iter().filter(|row| row.atmosphere != own[0].atmosphere).cloned().collect();
-        let without = Evidence::new(&Measured { rows: others, ..Measured::default() })?;
-        all.extend(own.iter().map(|row| without.predict(&row.traits)));
-    }
-    Ok(all)
-}
-
-/// Margins of the metrics: every scene is predicted from the atmospheres other than its own, and for each of [`ASKED`] a rung is chosen for it as a
-/// plan would; the margin is the least with which 97 % of the choices meet what was asked.
-///
-/// # Errors
-/// A sentence, if there are fewer than two atmospheres.
-pub fn margins(measured: &Measured) -> Result<[f64; 3], String> {
-    let left_out = left_out(measured)?;
-    Ok(Metric::ALL.map(|metric| margin(metric, measured, &left_out)))
-}
-
-/// Pixels of the pictures for which margins are found.
-const PIXELS: f64 = 256.0 * 256.0;
-
-/// The least margin with which [`SURE`] of the choices for scenes predicted from others meet what was asked, and [`SURE_OF_EACH`].
-fn margin(metric: Metric, measured: &Measured, left_out: &[Prediction]) -> f64 {
-    let met = |margin: f64| {
-        let scenes = measured.rows.len() as f64;
-        let shares = ASKED.map(|share| {
-            let asked = metric.unit(share);
-            let good = measured.rows.iter().zip(left_out).filter(|(row, prediction)| {
-                // Paths, which are taken where there is no other, meet what they are asked for.
-                let chosen = prediction.choose(asked, (metric, margin), PIXELS, &|_| true);
-                chosen.is_none_or(|(i, _)| row.errors[i][metric as usize] <= asked)
-            });
-            good.count() as f64 / scenes
-        });
-        shares.iter().sum::<f64>() >= SURE * shares.len() as f64 && shares.iter().all(|&share| share >= SURE_OF_EACH)
-    };
-    let (low, high) = MARGINS;
-    let mut margins = (0..=MARGIN_STEPS).map(|i| low + (high - low) * f64::from(i) / f64::from(MARGIN_STEPS));
-    margins.find(|margin| met(*margin)).unwrap_or(high)
 }
 
 /// Why a plan is the safe one.
