@@ -177,9 +177,16 @@ impl Measured {
         if lines.next() != Some(Self::header().as_str()) {
             return Err("line 2: another header than that of this program's study".into());
         }
-        let rows =
-            (3..).zip(lines).map(|(at, line)| row(line).ok_or_else(|| format!("line {at}: not a measured scene")));
-        Ok(Self { margins: [radiance, luminance, colour], rows: rows.collect::<Result<_, _>>()? })
+        let mut rows: Vec<Row> = Vec::new();
+        for (at, line) in (3..).zip(lines) {
+            let row = row(line).ok_or_else(|| format!("line {at}: not a measured scene"))?;
+            let same = |other: &Row| other.atmosphere == row.atmosphere;
+            if rows.last().is_some_and(|last| !same(last)) && rows.iter().any(same) {
+                return Err(format!("line {at}: atmosphere {} apart from its other scenes", row.atmosphere));
+            }
+            rows.push(row);
+        }
+        Ok(Self { margins: [radiance, luminance, colour], rows })
     }
 }
 

@@ -37,6 +37,10 @@ fn stored_measurements_are_what_the_study_writes() {
     let short: String = csv.lines().take(4).map(|line| format!("{line}\n")).collect();
     let broken = short.replacen(",0.002,", ",high,", 1);
     assert!(Measured::parse(&broken).is_err_and(|e| e.starts_with("line 3")), "{broken:.60}");
+    // An atmosphere's scenes are left out together.
+    let lines: Vec<&str> = csv.lines().collect();
+    let apart = [&lines[..3], &lines[lines.len() - 1..], &lines[3..4]].concat().join("\n");
+    assert!(Measured::parse(&apart).is_err_and(|e| e.starts_with("line 5: atmosphere")));
 }
 
 #[test]

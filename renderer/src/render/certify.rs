@@ -22,8 +22,8 @@ const LOOKS: [u32; 9] = [1, 2, 3, 4, 5, 6, 8, 16, 64];
 /// Standard errors that a number is below with 95 % confidence: of one look, and of each of [`LOOKS`] so that all together have it.
 ///
 /// What noise adds to the mean square after m and after n > m rounds, (sum of m or n draws)^2 less the mean of that, has the correlation
-/// m / n; where tables are off there is a part with the root of that. The greatest of nine normal numbers that are correlated so little is
-/// above 2.44 in 5 % (`nine_looks_together_have_95_percent`); of more correlated ones it is less (Slepian 1962).
+/// m / n; where tables are off there is a part with the root of that, which is more. The greatest of nine normal numbers with the first is
+/// above 2.44 in 5 % (`nine_looks_together_have_95_percent`), with more of it less often (Slepian 1962).
 const ONE_LOOK: f64 = 1.645;
 const NINE_LOOKS: f64 = 2.44;
 

@@ -51,8 +51,8 @@ impl Fan {
     /// What is taken for pictures of air with particles: the error of equal work is least.
     pub const USUAL: Self = Self { first: 512, kept: 2, further: 256 };
 
-    /// What is taken for pictures of molecules alone, whose phase function is smooth: low-discrepancy points leave a third of the variance
-    /// where there are twice as many.
+    /// What is taken for pictures of molecules alone, whose phase function is smooth: there one fan of low-discrepancy points has less noise
+    /// than two of half as many.
     pub const SMOOTH: Self = Self { first: 1024, kept: 2, further: 512 };
 
     /// What is taken where little is asked of a few directions.

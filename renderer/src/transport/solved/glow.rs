@@ -2,8 +2,8 @@
 //!
 //! At equal steps of a [`Way`] the light that arrives is about
 //! sum_k beta_k(h) (p_k T(h, mu) + M_k(h, mu)) e^-tau ds/dv: beta_k a species' scattering coefficient and p_k its phase function of sunlight,
-//! T the sunlight that arrives, M_k what it makes of other light, tau by the extinction at the steps; each the mean over wavelengths of a
-//! group that the air takes about as much from. Of all together light of the shortest would come from much too far away.
+//! T the sunlight that arrives, M_k what it makes of other light, tau by the extinction at the steps. All but p_k are those of a group of
+//! wavelengths that the air takes about as much from: of all together, light of the shortest would come from much too far away.
 
 use super::guide::{EVEN, Way};
 use super::line::MOST_SPECIES;

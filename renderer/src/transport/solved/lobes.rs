@@ -6,8 +6,8 @@ use super::species::Species;
 /// Nodes, even in the sine of half the angle.
 const NODES: usize = 256;
 
-/// Half the angle within which phase functions count as flat, about half the width of a bin of directions: narrower peaks are drawn
-/// by themselves.
+/// Half of 8 degrees, the angle within which phase functions count as flat: about a third of a bin of directions (22.5 degrees of azimuth).
+/// Narrower peaks are drawn by themselves.
 const NARROW: f64 = 4.0 * std::f64::consts::PI / 180.0;
 
 /// Phase functions of the species, the means over wavelengths.
