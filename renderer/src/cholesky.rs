@@ -23,7 +23,7 @@ impl Cholesky {
         Self { rows }
     }
 
-    /// Rows.
+    /// How many rows it has.
     pub(crate) fn count(&self) -> usize {
         self.rows.len()
     }

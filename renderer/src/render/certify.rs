@@ -366,7 +366,7 @@ mod tests {
 
     #[test]
     fn bounds_hold_in_95_percent() {
-        // By a spread alone 6 to 10 % of these are false. Of 500 a share of 5 % is known to 1 %.
+        // Of 500 a share of 5 % is known to 1 %.
         for (noise, uneven, fans) in [(2.0, 0.0, 2), (3.0, 0.0, 4), (2.0, 0.5, 2), (2.0, 0.5, 4), (1.0, 0.8, 4)] {
             let share = falsely_held(noise, uneven, fans);
             assert!(share <= 0.06, "{noise} {uneven} {fans}: {share}");

@@ -93,7 +93,7 @@ pub(super) struct View<'c, R: Tabled, const L: usize> {
     pub(super) bins: Bins<SIGHT>,
     /// Densities of the light that is scattered into the line of sight, for each entry of the guide that is met along it.
     pub(super) onto: Vec<(usize, Bins<DIRECTIONS>)>,
-    /// Of light that is reflected into it.
+    /// Of light that is reflected into it, where it ends on a ground that reflects.
     pub(super) foot: Option<Bins<DIRECTIONS>>,
     /// Probability of the ground.
     pub(super) ground: f64,

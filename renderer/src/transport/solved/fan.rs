@@ -157,13 +157,14 @@ impl<R: Tabled, const L: usize> Estimate<'_, R, L> {
     #[inline(always)]
     fn first(&self, u: f64) -> (Vertex<'_, R, L>, [f64; L]) {
         let view = self.view;
-        if u < view.ground {
+        if let Some(onto) = &view.foot
+            && u < view.ground
+        {
             let total = view.chord.total();
             let weight = exp_minus(total).map(|through| through / view.ground);
             let foot = view.chord.foot(self.certificate.from, view.direction);
             let vertex = self.vertex(foot, None, view.frame);
-            let guide = view.foot.as_ref().map_or(vertex.guide, |onto| vertex.guide.with(onto));
-            return (Vertex { guide, ..vertex }, weight);
+            return (Vertex { guide: vertex.guide.with(onto), ..vertex }, weight);
         }
         let (v, density, _) = view.bins.sample((u - view.ground) / (1.0 - view.ground));
         let (s, stretch) = view.way.at(&view.chord, v);

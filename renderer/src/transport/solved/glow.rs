@@ -47,7 +47,7 @@ pub(super) struct Glow {
 const LOOKS: usize = 5;
 
 /// Light at a place.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct Light {
     /// Sunlight that arrives.
     sun: f32,
