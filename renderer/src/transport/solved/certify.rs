@@ -8,7 +8,7 @@
 //! T S_1 is a quadrature. T K T (S_1 + S) is a mean over points of the line of sight, directions and distances (a *fan*),
 //! a smooth integrand that low-discrepancy points do well; and D at some points of it is estimated in the same way: a fan of
 //! directions and distances less what the table says, and D at one point of that. D is small if the table is good, and the
-//! mean does not depend on whether it is.
+//! mean does not depend on whether it is: S leaves out the table's moments of high degree (sources.rs).
 //!
 //! Where phase functions have a peak the table's air is one in which the share f of scattered light goes straight on (delta-M).
 //! That equation can be kept exact: with the extinction k - f k_s the light L scattered otherwise is
@@ -25,7 +25,7 @@
 use super::Solved;
 use super::fan::Estimate;
 use super::guide::{Bins, DIRECTIONS, Guide, Way};
-use super::sources::Sources;
+use super::sources::{self, Sources};
 use super::species::Species;
 use super::tabled::Tabled;
 use crate::atmosphere::{Chord, Columns, Tolerance};
@@ -66,6 +66,8 @@ const SIGHT: usize = 256;
 #[derive(Debug)]
 pub struct Certificate<'a, const L: usize> {
     pub(super) solved: &'a Solved<L>,
+    /// The table with fewer moments, from which S is, if it has more.
+    fewer: Option<Solved<L>>,
     truth: Columns<L>,
     /// Columns of the table's air, where that is not the true one.
     scaled: Option<Columns<L>>,
@@ -119,8 +121,10 @@ impl<'a, const L: usize> Certificate<'a, L> {
                 norm[j] += radiance[j] / f64::from(DIRECTIONS);
             }
         }
-        let guide = Guide::new(&Sources { solved, truth: &columns, scaled: scaled.as_ref() }, from, sun, &norm);
-        Self { solved, truth: columns, scaled, from, sun, guide }
+        let fewer = solved.up_to(sources::DEGREE);
+        let tail = fewer.as_ref().unwrap_or(solved);
+        let guide = Guide::new(&Sources { solved: tail, truth: &columns, scaled: scaled.as_ref() }, from, sun, &norm);
+        Self { solved, fewer, truth: columns, scaled, from, sun, guide }
     }
 
     /// The fans of which equal work leaves the least error in pictures.
@@ -130,7 +134,8 @@ impl<'a, const L: usize> Certificate<'a, L> {
     }
 
     fn sources(&self) -> Sources<'_, L> {
-        Sources { solved: self.solved, truth: &self.truth, scaled: self.scaled.as_ref() }
+        let solved = self.fewer.as_ref().unwrap_or(self.solved);
+        Sources { solved, truth: &self.truth, scaled: self.scaled.as_ref() }
     }
 
     /// Where the observer is, and the direction to the sun.

@@ -26,7 +26,7 @@ use std::f64::consts::PI;
 const LEAST: f64 = 1e-3;
 
 /// What is scattered on.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Onward<const L: usize> {
     depths: Depths<L>,
     /// alpha and beta of each species.
