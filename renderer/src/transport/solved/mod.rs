@@ -22,6 +22,7 @@ mod depths;
 mod fan;
 mod file;
 mod first;
+mod folded;
 mod glow;
 mod grid;
 mod guide;

@@ -12,7 +12,7 @@
 //! is looked at by itself.
 
 use super::nodes::{Glance, Interpolation, Nodes};
-use super::sight::Around;
+use super::sight::{Around, Begun, Sight};
 use super::view::Seen;
 use super::{Optics, Solved};
 use crate::geometry::Place;
@@ -209,13 +209,22 @@ impl<const L: usize> Survey<'_, L> {
         self.each * (last - first)
     }
 
-    /// Looks from one azimuth to its opposite, at every node or between those of half as many.
-    fn ring(&self, zenith: f64, azimuths: usize, only_odd: bool) -> Vec<Looked<L>> {
-        let Panorama { from, sun, .. } = *self.all;
+    /// What looks at a zenith angle have in common.
+    fn begun(&self, zenith: f64) -> Option<Sight<'_, L>> {
+        let direction = self.all.direction(zenith, 0.0);
+        vectorised::<L, _>(Begun { solved: self.solved, from: self.all.from, direction })
+    }
+
+    /// Looks from one azimuth to its opposite.
+    fn ring(&self, zenith: f64, azimuths: usize) -> Vec<Looked<L>> {
+        self.around(self.begun(zenith).as_ref(), zenith, azimuths, false)
+    }
+
+    /// The same, at every node or between those of half as many.
+    fn around(&self, sight: Option<&Sight<'_, L>>, zenith: f64, azimuths: usize, only_odd: bool) -> Vec<Looked<L>> {
         let turns = (0..=azimuths).filter(|i| !only_odd || i % 2 == 1);
         let directions: Vec<_> = turns.map(|i| self.all.direction(zenith, i as f64 / azimuths as f64)).collect();
-        let around = Around { solved: self.solved, from, directions: &directions, sun };
-        let seen = vectorised::<L, _>(around);
+        let seen = vectorised::<L, _>(Around { sight, directions: &directions, sun: self.all.sun });
         directions.into_iter().zip(seen).collect()
     }
 
@@ -239,7 +248,7 @@ impl<const L: usize> Survey<'_, L> {
         let known = |i: usize| {
             tried.iter().find(|(k, ring)| *k == i && ring.len() == azimuths + 1).map(|(_, ring)| ring.clone())
         };
-        let look = |i: usize| known(i).unwrap_or_else(|| self.ring(at(i as f64 / (2 * RINGS) as f64), azimuths, false));
+        let look = |i: usize| known(i).unwrap_or_else(|| self.ring(at(i as f64 / (2 * RINGS) as f64), azimuths));
         let all: Vec<_> = (0..=2 * RINGS).into_par_iter().map(look).collect();
         let (rings, new) = apart(all);
         self.halves(between, ends, rings, new, halves)
@@ -287,7 +296,7 @@ impl<const L: usize> Survey<'_, L> {
             if self.pixels(between, ends) <= RINGS * (azimuths + 1) {
                 return vec![Part::new(between, ends, None)];
             }
-            let look = |i| self.ring(between.at(ends.0 + (ends.1 - ends.0) * share(i)), azimuths, false);
+            let look = |i| self.ring(between.at(ends.0 + (ends.1 - ends.0) * share(i)), azimuths);
             let new = (0..RINGS).into_par_iter().map(look).collect();
             self.halves(between, ends, rings, new, halves - 1)
         };
@@ -316,10 +325,11 @@ impl<const L: usize> Survey<'_, L> {
     /// A ring with as many azimuths as it needs, and at least so many intervals between them.
     fn enough(&self, zenith: f64, least: usize) -> Option<Vec<Looked<L>>> {
         let mut azimuths = least;
-        let mut ring = self.ring(zenith, azimuths, false);
+        let sight = self.begun(zenith);
+        let mut ring = self.around(sight.as_ref(), zenith, azimuths, false);
         while azimuths <= AZIMUTHS.1 {
             let nodes = self.nodes(std::slice::from_ref(&ring));
-            let new = self.ring(zenith, 2 * azimuths, true);
+            let new = self.around(sight.as_ref(), zenith, 2 * azimuths, true);
             let turn = |j: usize| (2 * j + 1) as f64 / (2 * azimuths) as f64;
             if new.iter().enumerate().all(|(j, looked)| self.is_good(&nodes, [0.0, turn(j)], looked, 1.0)) {
                 return Some(ring);

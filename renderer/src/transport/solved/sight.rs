@@ -2,6 +2,7 @@
 //! weights of the table's sources there, and the points at which sunlight is summed while the sun is high.
 
 use super::depths::Along;
+use super::folded::Folded;
 use super::line::{Crossing, Rule, Spread, Stencil, Take, crossings, quadrature};
 use super::onward::{Ahead, Dipoles};
 use super::view::Seen;
@@ -39,7 +40,7 @@ pub(super) struct Sight<'a, const L: usize> {
     ahead: Option<Ahead<'a, L>>,
     /// Intervals between crossings, on one side of the perigee each, up to where nothing more arrives.
     intervals: Vec<(f64, f64)>,
-    /// Points of each interval, for every rule by which one was integrated.
+    /// Points of each interval, for every rule by which one was integrated, and sources at the crossings.
     kept: RefCell<Kept<L>>,
     /// Where it crosses levels, what counts there, and what is scattered there of each degree: harmonics and sources in turn.
     sources: Vec<(Crossing, Reach)>,
@@ -55,6 +56,8 @@ struct Kept<const L: usize> {
     /// Of each interval the rules, and which points are theirs; none where it is too dark.
     rules: Vec<Vec<(Parts, Option<Range<usize>>)>>,
     points: Points<L>,
+    /// Of each crossing.
+    folded: Folded<L>,
 }
 
 /// Whether an interval is integrated finely, and the least number of parts.
@@ -155,7 +158,7 @@ impl<'a, const L: usize> Sight<'a, L> {
     #[inline(always)]
     fn points(&self, interval: usize, rule: Rule<'_>) -> Option<Range<usize>> {
         let mut kept = self.kept.borrow_mut();
-        let Kept { rules, points } = &mut *kept;
+        let Kept { rules, points, .. } = &mut *kept;
         let parts = (rule.fine, rule.least);
         if let Some((_, range)) = rules[interval].iter().find(|(known, _)| *known == parts) {
             return range.clone();
@@ -214,10 +217,11 @@ impl<'a, const L: usize> Sight<'a, L> {
         }
         let (towards, count, width) = (direction.dot(sun), optics.moments.count(), optics.moments.width());
         let rows = self.harmonics.chunks_exact(count.max(1)).zip(self.scattered.chunks_exact(width.max(1)));
-        for ((place, reach), rows) in self.sources.iter().zip(rows) {
+        let folded = &mut self.kept.borrow_mut().folded;
+        for (number, ((place, reach), rows)) in self.sources.iter().zip(rows).enumerate() {
             let r = solved.grid.level_radius(place.level);
             let there = (lit.position(place.s).dot(sun) / r).clamp(-1.0, 1.0);
-            let source = solved.gathered(&[(place.level, 1.0)], [self.zenith(place), there, towards], *reach, rows);
+            let source = folded.source(solved, (number, place, *reach), [self.zenith(place), there, towards], rows);
             add_product(&mut seen.rest, &source.map(f64::from), &[1.0; L]);
         }
         for (place, weights) in &self.dipoles {
@@ -243,10 +247,25 @@ impl<'a, const L: usize> Sight<'a, L> {
     }
 }
 
-/// Looks in directions of one zenith angle.
-pub(super) struct Around<'a, const L: usize> {
+/// A line of sight, to be begun: none where it meets no air.
+pub(super) struct Begun<'a, const L: usize> {
     pub(super) solved: &'a Solved<L>,
     pub(super) from: Place,
+    pub(super) direction: DVec3,
+}
+
+impl<'a, const L: usize> NullaryFnOnce for Begun<'a, L> {
+    type Output = Option<Sight<'a, L>>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        Sight::new(self.solved, self.from, self.direction, false)
+    }
+}
+
+/// Looks in directions that have the zenith angle of a line of sight.
+pub(super) struct Around<'a, const L: usize> {
+    pub(super) sight: Option<&'a Sight<'a, L>>,
     pub(super) directions: &'a [DVec3],
     pub(super) sun: DVec3,
 }
@@ -256,12 +275,11 @@ impl<const L: usize> NullaryFnOnce for Around<'_, L> {
 
     #[inline(always)]
     fn call(self) -> Vec<Seen<L>> {
-        let Self { solved, from, directions, sun } = self;
-        let sight = Sight::new(solved, from, directions[0], false);
-        let sunlight = &solved.optics.columns;
+        let Self { sight, directions, sun } = self;
         // (No closures, since those are not always inlined.)
         let mut all = vec![Seen::NOTHING; directions.len()];
         if let Some(sight) = sight {
+            let sunlight = &sight.solved.optics.columns;
             for (seen, direction) in all.iter_mut().zip(directions) {
                 *seen = sight.seen(*direction, sun, sunlight);
             }

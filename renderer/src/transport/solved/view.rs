@@ -4,7 +4,7 @@ use super::grid::Between;
 use super::harmonics::MOST_DEGREE;
 use super::line::MOST_SPECIES;
 use super::sight::Sight;
-use super::{Optics, Reach, Solved};
+use super::{Optics, Solved};
 use crate::atmosphere::Columns;
 use crate::geometry::Place;
 use crate::light::SunDisc;
@@ -184,39 +184,21 @@ impl<const L: usize> Solved<L> {
     pub(super) fn diffuse(
         &self,
         levels: &[(usize, f32)],
-        cosines: [f64; 3],
+        [zenith, there, towards]: [f64; 3],
         weights: &[[f64; L]],
         harmonics: &mut Vec<f64>,
     ) -> [f32; L] {
         let Some(reach) = self.optics.reach(weights) else { return [0.0; L] };
-        self.optics.moments.at(cosines[0], harmonics);
+        self.optics.moments.at(zenith, harmonics);
         let mut sources = [[0.0_f32; L]; MOST_DEGREE + 2];
         self.optics.add_sources(weights, &mut sources[..reach.sources]);
-        self.gathered(levels, cosines, reach, (harmonics, &sources))
-    }
-
-    /// As [`Solved::diffuse`], from the harmonics of the zenith angle and what each metre scatters of each degree.
-    #[inline(always)]
-    pub(super) fn gathered(
-        &self,
-        levels: &[(usize, f32)],
-        [zenith, there, towards]: [f64; 3],
-        reach: Reach,
-        (harmonics, sources): (&[f64], &[[f32; L]]),
-    ) -> [f32; L] {
         let mut total = [0.0_f32; L];
         let Between { first: [first], weights: lagrange } = self.grid.suns.locate(&[there as f32]);
         let lagrange = lagrange.map(|weight| weight[0]);
         if lagrange == [0.0; 4] {
             return total;
         }
-        let across = ((1.0 - zenith) * (1.0 + zenith) * (1.0 - there) * (1.0 + there)).max(0.0).sqrt();
-        let turn = if across > 1e-9 { ((towards - zenith * there) / across).clamp(-1.0, 1.0) } else { 1.0 };
-        let mut cosines = [1.0; MOST_DEGREE + 1];
-        cosines[1] = turn;
-        for m in 2..=reach.degree {
-            cosines[m] = 2.0 * turn * cosines[m - 1] - cosines[m - 2];
-        }
+        let cosines = cosines(turn(zenith, there, towards), reach.degree);
         let (suns, moments) = (self.grid.suns.count(), self.optics.moments.count());
         for &(level, share) in levels {
             let lagrange = lagrange.map(|weight| share * weight);
@@ -225,7 +207,7 @@ impl<const L: usize> Solved<L> {
             let (below, above) = rows.split_at(2 * moments);
             let ((a, b), (c, d)) = (below.split_at(moments), above.split_at(moments));
             let all = &self.optics.moments;
-            let pairs = all.pairs()[..reach.count].iter().zip(all.sources()).zip(harmonics);
+            let pairs = all.pairs()[..reach.count].iter().zip(all.sources()).zip(&*harmonics);
             for (((((&(_, m), &source), harmonic), (a, b)), c), d) in pairs.zip(a.iter().zip(b)).zip(c).zip(d) {
                 let factor = (harmonic * cosines[m]) as f32;
                 let source = &sources[source];
@@ -237,6 +219,25 @@ impl<const L: usize> Solved<L> {
         }
         total
     }
+}
+
+/// Cosine of the azimuth of a direction looked in from the sun's: of its zenith angle, of the sun's, and of the angle between the two the
+/// cosines are given. 1 where one of them is vertical.
+#[inline(always)]
+pub(super) fn turn(zenith: f64, there: f64, towards: f64) -> f64 {
+    let across = ((1.0 - zenith) * (1.0 + zenith) * (1.0 - there) * (1.0 + there)).max(0.0).sqrt();
+    if across > 1e-9 { ((towards - zenith * there) / across).clamp(-1.0, 1.0) } else { 1.0 }
+}
+
+/// Cosines of the multiples m of an angle, from 0 to `degree`, at least 1; 1 beyond.
+#[inline(always)]
+pub(super) fn cosines(cosine: f64, degree: usize) -> [f64; MOST_DEGREE + 1] {
+    let mut cosines = [1.0; MOST_DEGREE + 1];
+    cosines[1] = cosine;
+    for m in 2..=degree {
+        cosines[m] = 2.0 * cosine * cosines[m - 1] - cosines[m - 2];
+    }
+    cosines
 }
 
 /// Sine of an elevation above which the sun is as good as a point, for observers within this share of the height of the
