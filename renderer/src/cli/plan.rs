@@ -199,8 +199,14 @@ mod tests {
     #[test]
     fn a_plan_says_what_is_left_out_with_its_number() {
         let scene = Scene::default();
-        let clear =
-            Traits { biome: None, optical_depth: 0.0, sun_elevation_deg: 30.0, altitude_km: 0.002, albedo: 0.1 };
+        let clear = Traits {
+            biome: None,
+            optical_depth: 0.0,
+            sun_elevation_deg: 30.0,
+            altitude_km: 0.002,
+            albedo: 0.1,
+            ozone_du: 343.1,
+        };
         for (asked, metric) in [(0.05, Metric::Luminance), (0.01, Metric::Radiance), (1.0, Metric::Colour)] {
             let lines = lines(&scene, &clear, asked, metric);
             let has = |start: &str| lines.iter().any(|line| line.starts_with(start));

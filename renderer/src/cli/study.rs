@@ -63,7 +63,7 @@ pub(super) enum StudyName {
     Strip,
     /// Where clear skies have no polarisation over the sun's elevation: the points of Arago, Babinet and Brewster
     NeutralPoints,
-    /// What plans are made from: errors and costs of every rung on 280 scenes (8 core-minutes; each atmosphere is stored when it is done)
+    /// What plans are made from: errors and costs of every rung on 720 scenes (half an hour of a core; each atmosphere is stored when it is done)
     Plans,
     /// The same of 102 other scenes, by which plans are judged (4 core-minutes)
     HeldOut,

@@ -26,8 +26,7 @@ pub struct Atlas {
 }
 
 const TITLE: &str = "# What leaving out parts of the model changes: rms over 64 directions, shares and CIEDE2000";
-const HEADER: &str =
-    "term,regime,aerosol,optical_depth_550nm,sun_elevation_deg,altitude_km,albedo,radiance,luminance,ciede2000";
+const HEADER: &str = "term,regime,aerosol,optical_depth_550nm,sun_elevation_deg,altitude_km,albedo,ozone_du,radiance,luminance,ciede2000";
 
 impl Difference {
     /// Whether it is of the world, and not of how it is computed.
@@ -52,11 +51,11 @@ impl Atlas {
     pub fn csv(&self) -> String {
         let mut csv = format!("{TITLE}\n{HEADER}\n");
         for Difference { term, regime, traits, change: [radiance, luminance, colour] } in &self.rows {
-            let Traits { biome, optical_depth, sun_elevation_deg, altitude_km, albedo } = traits;
+            let Traits { biome, optical_depth, sun_elevation_deg, altitude_km, albedo, ozone_du } = traits;
             // Writing to a string does not fail.
             let _ = writeln!(
                 csv,
-                "{term},{regime},{},{optical_depth:.4},{sun_elevation_deg},{altitude_km},{albedo},{radiance:.2e},{luminance:.2e},{colour:.2e}",
+                "{term},{regime},{},{optical_depth:.4},{sun_elevation_deg},{altitude_km},{albedo},{ozone_du:.1},{radiance:.2e},{luminance:.2e},{colour:.2e}",
                 biome.map_or("none", Biome::name)
             );
         }
@@ -98,11 +97,12 @@ fn row(line: &str) -> Option<Difference> {
     let fields: Vec<&str> = line.split(',').collect();
     let [term, regime, aerosol, numbers @ ..] = fields.as_slice() else { return None };
     let numbers: Vec<f64> = numbers.iter().map(|text| text.parse().ok()).collect::<Option<_>>()?;
-    let [optical_depth, sun_elevation_deg, altitude_km, albedo, radiance, luminance, colour] = numbers[..] else {
+    let [optical_depth, sun_elevation_deg, altitude_km, albedo, ozone_du, radiance, luminance, colour] = numbers[..]
+    else {
         return None;
     };
     let biome = if *aerosol == "none" { None } else { Some(Biome::from_name(aerosol)?) };
-    let traits = Traits { biome, optical_depth, sun_elevation_deg, altitude_km, albedo };
+    let traits = Traits { biome, optical_depth, sun_elevation_deg, altitude_km, albedo, ozone_du };
     let change = [radiance, luminance, colour];
     change.iter().all(|x| x.is_finite() && *x >= 0.0).then(|| Difference {
         term: (*term).to_owned(),

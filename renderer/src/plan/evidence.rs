@@ -12,10 +12,9 @@ use super::{Candidate, Metric, Traits};
 /// Errors at which margins are found and plans are judged; of colour in hundreds of units.
 pub const ASKED: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
 
-/// Share of plans that are to meet their error where an atmosphere is left out of the measurements, and of those at each error: 95 %, and
-/// about one standard error of a share of so many scenes (1.3 % of 280).
+/// Share of plans at each error that are to meet it where an atmosphere is left out of the measurements: of a hundred scenes kept apart 95 then do
+/// so nine times in ten (at most five failures where three are expected).
 const SURE: f64 = 0.97;
-const SURE_OF_EACH: f64 = 0.96;
 
 /// Margins that are tried, in standard deviations of the prediction.
 const MARGINS: (f64, f64) = (0.0, 4.0);
@@ -27,7 +26,7 @@ const LEAST: f64 = 1e-6;
 /// Distance in units of [`Traits::coordinates`] over which predictions are off alike, and how many scenes of a surprise of 1 count beside
 /// those that are there: by the likelihood of what predictions are off, which the test `deviations_are_as_wide_as_predictions_are_off` has.
 const NEAR: f64 = 0.3;
-const AT_FIRST: f64 = 0.4;
+const AT_FIRST: f64 = 0.2;
 
 /// Measurements, made ready to predict from.
 #[derive(Debug, Clone)]
@@ -46,7 +45,7 @@ pub struct Evidence {
 
 /// How alike two scenes are, 1 of equal ones: Matern's covariance of order 3/2 of their distance; less for aerosols of two kinds.
 pub(super) fn likeness(a: &Traits, b: &Traits) -> f64 {
-    const OTHER_KIND: f64 = 0.9;
+    const OTHER_KIND: f64 = 0.8;
     let r = 3.0_f64.sqrt() * a.distance(b) / REACH;
     let kind = if a.biome == b.biome { 1.0 } else { OTHER_KIND };
     kind * (1.0 + r) * (-r).exp()
@@ -158,7 +157,7 @@ impl Evidence {
 }
 
 /// Margins of the metrics: every scene is predicted from the atmospheres other than its own, and for each of [`ASKED`] a rung is chosen for it as a
-/// plan would; the margin is the least with which 97 % of the choices meet what was asked, and 96 % of those at each error.
+/// plan would; the margin is the least with which 97 % of the choices at each error meet it.
 ///
 /// # Errors
 /// A sentence, if there are fewer than two atmospheres.
@@ -174,20 +173,19 @@ pub fn margins(measured: &Measured) -> Result<[f64; 3], String> {
 /// Pixels of the pictures for which margins are found.
 const PIXELS: f64 = 256.0 * 256.0;
 
-/// The least margin with which [`SURE`] of the choices for scenes predicted from others meet what was asked, and [`SURE_OF_EACH`].
+/// The least margin with which [`SURE`] of the choices for scenes predicted from others meet what was asked, at each error.
 fn margin(metric: Metric, measured: &Measured, left_out: &[Prediction]) -> f64 {
     let met = |margin: f64| {
         let scenes = measured.rows.len() as f64;
-        let shares = ASKED.map(|share| {
+        ASKED.iter().all(|&share| {
             let asked = metric.unit(share);
             let good = measured.rows.iter().zip(left_out).filter(|(row, prediction)| {
                 // Paths, which are taken where there is no other, meet what they are asked for.
                 let chosen = prediction.choose(asked, (metric, margin), PIXELS, &|_| true);
                 chosen.is_none_or(|(i, _)| row.errors[i][metric as usize] <= asked)
             });
-            good.count() as f64 / scenes
-        });
-        shares.iter().sum::<f64>() >= SURE * shares.len() as f64 && shares.iter().all(|&share| share >= SURE_OF_EACH)
+            good.count() as f64 >= SURE * scenes
+        })
     };
     let (low, high) = MARGINS;
     let mut margins = (0..=MARGIN_STEPS).map(|i| low + (high - low) * f64::from(i) / f64::from(MARGIN_STEPS));

@@ -32,10 +32,10 @@ impl Kriging {
 
     /// Some of the points, predicted from the others.
     pub(super) fn without(&self, points: Range<usize>) -> Without {
-        let unit = |count: usize, i: usize| (0..count).map(|k| f64::from(u8::from(k == i))).collect::<Vec<f64>>();
-        let columns: Vec<_> = points.clone().map(|i| self.solve(&unit(self.0.count(), i))).collect();
-        let block = Cholesky::new(points.len(), |i, j| columns[i][points.start + j]);
-        let variances = (0..points.len()).map(|i| block.solve(&unit(points.len(), i))[i]).collect();
+        let columns: Vec<_> = points.clone().map(|i| self.0.column(i)).collect();
+        let block = Cholesky::new(points.len(), |i, j| Cholesky::inverse((i, &columns[i]), (j, &columns[j])));
+        let own: Vec<_> = (0..points.len()).map(|i| block.column(i)).collect();
+        let variances = own.iter().enumerate().map(|(i, own)| Cholesky::inverse((i, own), (i, own))).collect();
         Without { points, block, variances }
     }
 }

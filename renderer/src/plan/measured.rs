@@ -80,8 +80,8 @@ pub struct Row {
     pub atmosphere: usize,
     /// What the scene is.
     pub traits: Traits,
-    /// Its month, latitude in degrees and ozone in Dobson units.
-    pub ozone: (u8, f64, f64),
+    /// Its month and latitude in degrees.
+    pub season: (u8, f64),
     /// What is off, of each [`Candidate`] and [`Metric`].
     pub errors: Vec<[f64; 3]>,
     /// What it costs.
@@ -146,11 +146,11 @@ impl Measured {
         let [radiance, luminance, colour] = self.margins;
         let mut csv = format!("{MARGINS}{radiance:.2} {luminance:.2} {colour:.2}\n{}\n", Self::header());
         for row in &self.rows {
-            let Traits { biome, optical_depth, sun_elevation_deg, altitude_km, albedo } = &row.traits;
-            let (month, latitude, ozone) = row.ozone;
+            let Traits { biome, optical_depth, sun_elevation_deg, altitude_km, albedo, ozone_du } = &row.traits;
+            let (month, latitude) = row.season;
             let _ = write!(
                 csv,
-                "{},{},{optical_depth:.4},{sun_elevation_deg:.2},{altitude_km:.3},{albedo:.3},{month},{latitude:.1},{ozone:.1}",
+                "{},{},{optical_depth:.4},{sun_elevation_deg:.2},{altitude_km:.3},{albedo:.3},{month},{latitude:.1},{ozone_du:.1}",
                 row.atmosphere,
                 biome.map_or("none", Biome::name)
             );
@@ -206,6 +206,7 @@ fn row(line: &str) -> Option<Row> {
         sun_elevation_deg: number(3)?,
         altitude_km: number(4)?,
         albedo: number(5)?,
+        ozone_du: number(8)?,
     };
     let positive = |i: usize| number(KEY_COUNT + i).filter(|x| *x >= 0.0);
     let values: Vec<f64> = (0..COSTS + 3 * Candidate::COUNT).map(positive).collect::<Option<_>>()?;
@@ -213,7 +214,7 @@ fn row(line: &str) -> Option<Row> {
     Some(Row {
         atmosphere: fields[0].parse().ok()?,
         traits,
-        ozone: (fields[6].parse().ok()?, number(7)?, number(8)?),
+        season: (fields[6].parse().ok()?, number(7)?),
         errors: errors.chunks_exact(3).map(|chunk| [chunk[0], chunk[1], chunk[2]]).collect(),
         costs: Costs::from_values(costs.first_chunk()?),
     })

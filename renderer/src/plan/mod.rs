@@ -82,6 +82,8 @@ pub struct Traits {
     pub altitude_km: f64,
     /// Albedo of the ground, the mean over its wavelengths.
     pub albedo: f64,
+    /// Ozone in Dobson units.
+    pub ozone_du: f64,
 }
 
 impl Traits {
@@ -98,19 +100,21 @@ impl Traits {
             sun_elevation_deg: scene.sun_elevation_deg,
             altitude_km: scene.altitude_km,
             albedo,
+            ozone_du: sky.air().ozone_du(),
         }
     }
 
     /// Coordinates in which errors are smooth, each in units of the distance over which they change: elevation of the sun, finest at the
-    /// horizon; amount of aerosol; albedo; altitude, which above the air makes no difference.
+    /// horizon; amount of aerosol; albedo; altitude, which above the air makes no difference; ozone.
     #[must_use]
-    pub fn coordinates(&self) -> [f64; 4] {
+    pub fn coordinates(&self) -> [f64; 5] {
         const TOP_KM: f64 = 120.0;
         [
             ((self.sun_elevation_deg + 1.0) / 3.0).asinh(),
             0.7 * (self.optical_depth / 0.05).ln_1p(),
             0.75 * self.albedo,
             1.05 * (self.altitude_km.min(TOP_KM) / 2.0).ln_1p(),
+            0.2 * self.ozone_du / 100.0,
         ]
     }
 

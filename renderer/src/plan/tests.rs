@@ -14,7 +14,7 @@ fn evidence() -> Evidence {
 }
 
 fn traits(sun_elevation_deg: f64, biome: Option<Biome>, optical_depth: f64) -> Traits {
-    Traits { biome, optical_depth, sun_elevation_deg, altitude_km: 0.002, albedo: 0.1 }
+    Traits { biome, optical_depth, sun_elevation_deg, altitude_km: 0.002, albedo: 0.1, ozone_du: 343.1 }
 }
 
 fn some() -> Vec<Traits> {

@@ -2,7 +2,7 @@
 //!
 //! Transfers are compared at eight wavelengths ([`Spectrum::Spread8`]), since what a grid is off varies slowly with wavelength; the spectrum between them is that of
 //! coarse tables at 31. With U(lambda) the latter and G(lambda_k) another transfer at the eight, G(lambda) = U(lambda) r(lambda) with r the cubic through
-//! G / U at the eight. The truth is T, of the finest polarised tables. What polarisation changes hardly depends on the grid: of all but the two coarsest grids
+//! G / U at the eight; U is 1 in directions in which coarse tables are dark. The truth is T, of the finest polarised tables. What polarisation changes hardly depends on the grid: of all but the two coarsest grids
 //! only polarised tables are solved, and radiances, times and looks without it follow by the ratios of light tables.
 
 use super::scenes::Set;
@@ -113,11 +113,13 @@ impl Eyes {
         &self.spectra[spectrum as usize]
     }
 
-    /// A transfer's factors at the whole spectrum, from those at the eight.
+    /// A transfer's factors at the whole spectrum, from those at the eight; where the usual ones are not all bright, the cubic through these.
     fn whole(&self, usual: &Factors, eight: &Factors) -> Factors {
         let places = &self.eye(Spectrum::Spread8).places;
+        let even = vec![1.0; SPECTRUM];
         let one = |(usual, eight): (&Vec<f64>, &Vec<f64>)| {
-            let ratio = |(&place, &value): (&usize, &f64)| if usual[place] > 0.0 { value / usual[place] } else { 0.0 };
+            let usual = if usual.iter().all(|light| *light > 0.0) { usual } else { &even };
+            let ratio = |(&place, &value): (&usize, &f64)| value / usual[place];
             let ratios: Vec<f64> = places.iter().zip(eight).map(ratio).collect();
             let at = |(u, (first, weights)): (&f64, &(usize, [f64; 4]))| {
                 u * weights.iter().zip(&ratios[*first..]).map(|(w, r)| w * r).sum::<f64>()
@@ -236,8 +238,7 @@ pub(super) fn measure(
             path: spread(&mut paths, scene, &directions)?,
         };
         let traits = Traits::of(scene, &whole.sky);
-        let ozone = (scene.month, scene.latitude_deg, whole.sky.air().ozone_du());
-        rows.push(Row { atmosphere: number, traits, ozone, errors, costs });
+        rows.push(Row { atmosphere: number, traits, season: (scene.month, scene.latitude_deg), errors, costs });
     }
     debug_assert!(rows.iter().all(|row| row.errors.len() == Candidate::COUNT));
     Ok(rows)

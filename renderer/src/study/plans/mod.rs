@@ -27,6 +27,10 @@ pub fn measure(
     keep: &(dyn Fn(&Measured) + Sync),
 ) -> Result<Measured, RenderError> {
     let finished: BTreeSet<usize> = known.rows.iter().map(|row| row.atmosphere).collect();
+    if let Some(number) = finished.iter().find(|&&number| !is_whole(set, number, &known)) {
+        let what = format!("the scenes of atmosphere {number} are not this study's: start anew, without --resume");
+        return Err(RenderError::Measured(what));
+    }
     let rows = Mutex::new(known.rows);
     let done = Mutex::new(vec![0.0; atmospheres]);
     super::on_one_core_each(atmospheres, threads, &|number| {
@@ -48,6 +52,18 @@ pub fn measure(
     })?;
     let rows = rows.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     with_margins(rows)
+}
+
+/// Whether rows have the scenes of an atmosphere of a set, as exactly as a file tells.
+fn is_whole(set: Set, number: usize, known: &Measured) -> bool {
+    let rows: Vec<_> = known.rows.iter().filter(|row| row.atmosphere == number).collect();
+    let scenes = atmosphere(set, number);
+    let same = |(row, scene): (&&Row, &crate::scene::Scene)| {
+        (row.traits.sun_elevation_deg - scene.sun_elevation_deg).abs() < 0.01
+            && (row.traits.altitude_km - scene.altitude_km).abs() < 0.001
+            && row.traits.biome == scene.biome
+    };
+    rows.len() == scenes.len() && rows.iter().zip(&scenes).all(same)
 }
 
 /// Rows, as a file has them, with the margins that these call for; none of a single atmosphere.

@@ -18,7 +18,7 @@ impl Set {
     #[must_use]
     pub fn size(self) -> (usize, usize) {
         match self {
-            Self::Measured => (20, 14),
+            Self::Measured => (120, 6),
             Self::HeldOut => (17, 6),
         }
     }
@@ -73,9 +73,9 @@ pub fn atmosphere(set: Set, number: usize) -> Vec<Scene> {
     let (_, count) = set.size();
     let scenes = (0..count).map(|i| {
         let share = (i as f64 + even(0.0, 1.0)) / count as f64;
-        // Of fourteen ten are at the ground, two in the air, two in space; of six the last two may be anywhere.
+        // Of seven in turn five are at the ground, one in the air, one in space; of those kept apart the last two of six may be anywhere.
         let place = match set {
-            Set::Measured => [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 2.0][i % 7],
+            Set::Measured => [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 2.0][(number * count + i) % 7],
             Set::HeldOut => {
                 if i >= 4 {
                     even(0.0, 3.0).floor()
@@ -109,12 +109,31 @@ mod tests {
     fn scenes_are_valid_and_the_two_sets_are_apart() {
         let all = |set: Set| -> Vec<Scene> { (0..set.size().0).flat_map(|i| atmosphere(set, i)).collect() };
         let (measured, held_out) = (all(Set::Measured), all(Set::HeldOut));
-        assert!(held_out.len() >= 100 && measured.len() >= 200);
+        assert!(held_out.len() >= 100 && measured.len() >= 700);
         for scene in measured.iter().chain(&held_out) {
             scene.validate().expect("valid");
         }
         assert!(held_out.iter().all(|scene| !measured.contains(scene)));
         let low = |scenes: &[Scene]| scenes.iter().filter(|scene| scene.sun_elevation_deg < 0.0).count();
-        assert!(low(&held_out) > 15 && low(&measured) > 40, "{} {}", low(&held_out), low(&measured));
+        assert!(low(&held_out) > 15 && low(&measured) > 150, "{} {}", low(&held_out), low(&measured));
+    }
+
+    #[test]
+    fn every_kind_of_aerosol_is_looked_at_from_everywhere() {
+        // Of 12 atmospheres of 6 scenes a seventh is in the air and as much in space: 10 or 11; a sixth of all has each share of the suns.
+        let (atmospheres, count) = Set::Measured.size();
+        let mut seen = vec![[0; 2]; 10 + count];
+        for number in 0..atmospheres {
+            for (i, scene) in atmosphere(Set::Measured, number).iter().enumerate() {
+                for row in [number % 10, 10 + i] {
+                    seen[row][0] += usize::from((0.1..100.0).contains(&scene.altitude_km));
+                    seen[row][1] += usize::from(scene.altitude_km > 100.0);
+                }
+            }
+        }
+        for (row, places) in seen.iter().enumerate() {
+            let least = if row < 10 { 10 } else { 17 };
+            assert!(places.iter().all(|&count| count >= least), "{row}: {places:?}");
+        }
     }
 }

@@ -1,14 +1,14 @@
 //! Certificates: radiance without bias by Monte Carlo, with a solved table as the tail of every path.
 //!
 //! Let S_1 be sunlight scattered once at a place, S_2 = K T (S_1 + S_2) what the place scatters of all other light (T carries
-//! sources along lines, K scatters), and S the table's S_2. Then for any S
+//! sources along lines, K scatters), and S any guess at S_2: the table's, to the degree that sources.rs has. Then
 //!
 //! L = T S_1 + T K T (S_1 + S) + T K T D,  D = S_2 - S = [K T (S_1 + S) - S] + K T D.
 //!
 //! T S_1 is a quadrature. T K T (S_1 + S) is a mean over points of the line of sight, directions and distances (a *fan*),
 //! a smooth integrand that low-discrepancy points do well; and D at some points of it is estimated in the same way: a fan of
-//! directions and distances less what the table says, and D at one point of that. D is small if the table is good, and the
-//! mean does not depend on whether it is: S leaves out the table's moments of high degree (sources.rs).
+//! directions and distances less what the table says, and D at one point of that. D is small where the guess is good, and the
+//! mean does not depend on whether it is.
 //!
 //! Where phase functions have a peak the table's air is one in which the share f of scattered light goes straight on (delta-M).
 //! That equation can be kept exact: with the extinction k - f k_s the light L scattered otherwise is
@@ -66,7 +66,7 @@ const SIGHT: usize = 256;
 #[derive(Debug)]
 pub struct Certificate<'a, const L: usize> {
     pub(super) solved: &'a Solved<L>,
-    /// The table with fewer moments, from which S is, if it has more.
+    /// The table cut to the moments of S, where it has more.
     fewer: Option<Solved<L>>,
     truth: Columns<L>,
     /// Columns of the table's air, where that is not the true one.

@@ -12,13 +12,13 @@ const GROUP: usize = 4;
 const GROUPS: usize = MOST_SPECIES.div_ceil(GROUP);
 
 /// Depths of some species, all together.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Depths<const L: usize> {
     groups: Vec<Group<L>>,
 }
 
 /// Of each species the depth at the wavelength where it is most, and the other wavelengths as shares.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 struct Group<const L: usize> {
     columns: Columns<GROUP>,
     shares: Vec<[f64; L]>,

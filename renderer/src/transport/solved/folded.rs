@@ -7,11 +7,11 @@
 //!
 //! are done once for each zenith angle chi of the table that is asked for, and J = sum_m cos(m phi) F_m of each line has few terms.
 
-use super::Solved;
 use super::grid::Between;
 use super::harmonics::MOST_DEGREE;
-use super::view::{cosines, turn};
-use super::{Reach, line::Crossing};
+use super::line::Crossing;
+use super::view::{azimuth_cosine, cosines};
+use super::{Reach, Solved};
 
 /// F_m at the crossings of a line, found when they are first asked for.
 #[derive(Default)]
@@ -24,20 +24,20 @@ pub(super) struct Folded<const L: usize> {
 
 impl<const L: usize> Folded<L> {
     /// J at a crossing of that number, in a direction looked in; of its zenith angle there, of the sun's, and of the angle between the two the
-    /// cosines are given, harmonics and sources as in [`super::sight::Sight`].
+    /// cosines are given, and s_l S_lm(mu) of each moment.
     #[inline(always)]
     pub(super) fn source(
         &mut self,
         solved: &Solved<L>,
         (number, place, reach): (usize, &Crossing, Reach),
         [zenith, there, towards]: [f64; 3],
-        (harmonics, sources): (&[f64], &[[f32; L]]),
+        weights: &[[f32; L]],
     ) -> [f32; L] {
         let mut total = [0.0_f32; L];
         let suns = &solved.grid.suns;
-        let Between { first: [first], weights } = suns.locate(&[there as f32]);
-        let weights = weights.map(|weight| weight[0]);
-        if weights == [0.0; 4] {
+        let Between { first: [first], weights: lagrange } = suns.locate(&[there as f32]);
+        let lagrange = lagrange.map(|weight| weight[0]);
+        if lagrange == [0.0; 4] {
             return total;
         }
         let (orders, row) = (reach.degree + 1, number * suns.count());
@@ -51,16 +51,16 @@ impl<const L: usize> Folded<L> {
             if known == 0 {
                 known = self.sums.len() as u32 + 1;
                 self.begins[row + sun] = known;
-                self.fold(solved, place.level * suns.count() + sun, reach, (harmonics, sources));
+                self.fold(solved, place.level * suns.count() + sun, reach, weights);
             }
             *begin = known as usize - 1;
         }
-        let cosines = cosines(turn(zenith, there, towards), reach.degree);
+        let cosines = cosines(azimuth_cosine(zenith, there, towards), reach.degree);
         let [a, b, c, d] = begins.map(|begin| &self.sums[begin..begin + orders]);
         for ((((cosine, a), b), c), d) in cosines.iter().zip(a).zip(b).zip(c).zip(d) {
             let cosine = *cosine as f32;
             for j in 0..L {
-                let sum = (weights[0] * a[j] + weights[1] * b[j]) + (weights[2] * c[j] + weights[3] * d[j]);
+                let sum = (lagrange[0] * a[j] + lagrange[1] * b[j]) + (lagrange[2] * c[j] + lagrange[3] * d[j]);
                 total[j] += cosine * sum;
             }
         }
@@ -69,17 +69,15 @@ impl<const L: usize> Folded<L> {
 
     /// Adds the F_m of a place of the table.
     #[inline(always)]
-    fn fold(&mut self, solved: &Solved<L>, place: usize, reach: Reach, (harmonics, sources): (&[f64], &[[f32; L]])) {
+    fn fold(&mut self, solved: &Solved<L>, place: usize, reach: Reach, weights: &[[f32; L]]) {
         let (moments, count) = (&solved.optics.moments, solved.optics.moments.count());
         let here = &solved.field.moments[place * count..][..reach.count];
         let mut sums = [[0.0_f32; L]; MOST_DEGREE + 1];
         for (m, run) in moments.runs(reach.count) {
             let mut sum = sums[m];
-            let pairs = moments.sources()[run.clone()].iter().zip(&harmonics[run.clone()]).zip(&here[run]);
-            for ((&source, harmonic), moment) in pairs {
-                let (harmonic, source) = (*harmonic as f32, &sources[source]);
+            for (weight, moment) in weights[run.clone()].iter().zip(&here[run]) {
                 for j in 0..L {
-                    sum[j] += harmonic * source[j] * moment[j];
+                    sum[j] += weight[j] * moment[j];
                 }
             }
             sums[m] = sum;

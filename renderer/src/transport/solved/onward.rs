@@ -26,7 +26,7 @@ use std::f64::consts::PI;
 const LEAST: f64 = 1e-3;
 
 /// What is scattered on.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Onward<const L: usize> {
     depths: Depths<L>,
     /// alpha and beta of each species.
@@ -69,6 +69,11 @@ impl<const L: usize> Onward<L> {
         }
         all.depths = Depths::new(&scattered, medium, shape)?;
         Ok(all)
+    }
+
+    /// What it says of places, without lines.
+    pub(super) fn of_places(&self) -> Self {
+        Self { depths: Depths::none(), kernels: self.kernels.clone(), full: self.full.clone() }
     }
 
     /// Sums over the species of their scattering coefficients times alpha and beta, with nothing of Q and U but the peak for not

@@ -12,7 +12,7 @@
 //! is looked at by itself.
 
 use super::nodes::{Glance, Interpolation, Nodes};
-use super::sight::{Around, Begun, Sight};
+use super::sight::{Around, Find, Sight};
 use super::view::Seen;
 use super::{Optics, Solved};
 use crate::geometry::Place;
@@ -210,14 +210,14 @@ impl<const L: usize> Survey<'_, L> {
     }
 
     /// What looks at a zenith angle have in common.
-    fn begun(&self, zenith: f64) -> Option<Sight<'_, L>> {
+    fn sight(&self, zenith: f64) -> Option<Sight<'_, L>> {
         let direction = self.all.direction(zenith, 0.0);
-        vectorised::<L, _>(Begun { solved: self.solved, from: self.all.from, direction })
+        vectorised::<L, _>(Find { solved: self.solved, from: self.all.from, direction })
     }
 
     /// Looks from one azimuth to its opposite.
     fn ring(&self, zenith: f64, azimuths: usize) -> Vec<Looked<L>> {
-        self.around(self.begun(zenith).as_ref(), zenith, azimuths, false)
+        self.around(self.sight(zenith).as_ref(), zenith, azimuths, false)
     }
 
     /// The same, at every node or between those of half as many.
@@ -325,7 +325,7 @@ impl<const L: usize> Survey<'_, L> {
     /// A ring with as many azimuths as it needs, and at least so many intervals between them.
     fn enough(&self, zenith: f64, least: usize) -> Option<Vec<Looked<L>>> {
         let mut azimuths = least;
-        let sight = self.begun(zenith);
+        let sight = self.sight(zenith);
         let mut ring = self.around(sight.as_ref(), zenith, azimuths, false);
         while azimuths <= AZIMUTHS.1 {
             let nodes = self.nodes(std::slice::from_ref(&ring));

@@ -3,6 +3,7 @@
 
 use super::depths::Along;
 use super::folded::Folded;
+use super::harmonics::MOST_DEGREE;
 use super::line::{Crossing, Rule, Spread, Stencil, Take, crossings, quadrature};
 use super::onward::{Ahead, Dipoles};
 use super::view::Seen;
@@ -42,21 +43,20 @@ pub(super) struct Sight<'a, const L: usize> {
     intervals: Vec<(f64, f64)>,
     /// Points of each interval, for every rule by which one was integrated, and sources at the crossings.
     kept: RefCell<Kept<L>>,
-    /// Where it crosses levels, what counts there, and what is scattered there of each degree: harmonics and sources in turn.
-    sources: Vec<(Crossing, Reach)>,
-    harmonics: Vec<f64>,
-    scattered: Vec<[f32; L]>,
+    /// Where it crosses levels, what counts there, and which of the weights are those of its moments, s_l S_lm(mu) (folded.rs).
+    sources: Vec<(Crossing, Reach, Range<usize>)>,
+    weights: Vec<[f32; L]>,
     /// The same for Q and U: where, and the weights of dipoles.
     dipoles: Vec<(Crossing, [[f64; L]; 2])>,
 }
 
-/// Points of a line, in the order in which they were first looked for.
+/// What is found of a line when it is first asked for.
 #[derive(Default)]
 struct Kept<const L: usize> {
     /// Of each interval the rules, and which points are theirs; none where it is too dark.
     rules: Vec<Vec<(Parts, Option<Range<usize>>)>>,
     points: Points<L>,
-    /// Of each crossing.
+    /// Sums over degrees at each crossing.
     folded: Folded<L>,
 }
 
@@ -106,8 +106,7 @@ impl<'a, const L: usize> Sight<'a, L> {
             intervals: Vec::with_capacity(places.len()),
             kept: RefCell::default(),
             sources: Vec::with_capacity(places.len()),
-            harmonics: Vec::new(),
-            scattered: Vec::new(),
+            weights: Vec::new(),
             dipoles: Vec::new(),
         };
         let mut weights = vec![[0.0; L]; species * places.len()];
@@ -142,12 +141,18 @@ impl<'a, const L: usize> Sight<'a, L> {
             let mut harmonics = Vec::with_capacity(optics.moments.count());
             for (place, weights) in places.iter().zip(weights.chunks_exact(species.max(1))) {
                 let Some(reach) = optics.reach(weights) else { continue };
-                all.sources.push((*place, reach));
                 optics.moments.at(all.zenith(place), &mut harmonics);
-                all.harmonics.extend_from_slice(&harmonics);
-                let from = all.scattered.len();
-                all.scattered.resize(from + optics.moments.width(), [0.0; L]);
-                optics.add_sources(weights, &mut all.scattered[from..from + reach.sources]);
+                let mut scattered = [[0.0; L]; MOST_DEGREE + 2];
+                optics.add_sources(weights, &mut scattered[..reach.sources]);
+                let first = all.weights.len();
+                for (harmonic, &source) in harmonics.iter().zip(optics.moments.sources()).take(reach.count) {
+                    let mut weight = scattered[source];
+                    for one in &mut weight {
+                        *one *= *harmonic as f32;
+                    }
+                    all.weights.push(weight);
+                }
+                all.sources.push((*place, reach, first..all.weights.len()));
             }
             all.dipoles = places.iter().copied().zip(dipoles.as_chunks::<2>().0.iter().copied()).collect();
         }
@@ -215,13 +220,13 @@ impl<'a, const L: usize> Sight<'a, L> {
                 }
             }
         }
-        let (towards, count, width) = (direction.dot(sun), optics.moments.count(), optics.moments.width());
-        let rows = self.harmonics.chunks_exact(count.max(1)).zip(self.scattered.chunks_exact(width.max(1)));
+        let towards = direction.dot(sun);
         let folded = &mut self.kept.borrow_mut().folded;
-        for (number, ((place, reach), rows)) in self.sources.iter().zip(rows).enumerate() {
+        for (number, (place, reach, weights)) in self.sources.iter().enumerate() {
             let r = solved.grid.level_radius(place.level);
             let there = (lit.position(place.s).dot(sun) / r).clamp(-1.0, 1.0);
-            let source = folded.source(solved, (number, place, *reach), [self.zenith(place), there, towards], rows);
+            let cosines = [self.zenith(place), there, towards];
+            let source = folded.source(solved, (number, place, *reach), cosines, &self.weights[weights.clone()]);
             add_product(&mut seen.rest, &source.map(f64::from), &[1.0; L]);
         }
         for (place, weights) in &self.dipoles {
@@ -247,14 +252,14 @@ impl<'a, const L: usize> Sight<'a, L> {
     }
 }
 
-/// A line of sight, to be begun: none where it meets no air.
-pub(super) struct Begun<'a, const L: usize> {
+/// Finds a line of sight; none where it meets no air.
+pub(super) struct Find<'a, const L: usize> {
     pub(super) solved: &'a Solved<L>,
     pub(super) from: Place,
     pub(super) direction: DVec3,
 }
 
-impl<'a, const L: usize> NullaryFnOnce for Begun<'a, L> {
+impl<'a, const L: usize> NullaryFnOnce for Find<'a, L> {
     type Output = Option<Sight<'a, L>>;
 
     #[inline(always)]

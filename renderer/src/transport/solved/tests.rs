@@ -2,8 +2,10 @@
 
 use super::super::tests::{EARTH, columns, estimate, exponential, medium, mixed, rayleigh, towards};
 use super::first::{Scattering, Sunlight};
+use super::folded::Folded;
 use super::glow::Glow;
 use super::guide::Way;
+use super::line::Crossing;
 use super::orders::Around;
 use super::rays::Lines;
 use super::solve::{First, Next, Setup};
@@ -367,8 +369,8 @@ fn kept_tables_are_those_that_were_solved() {
     std::fs::remove_dir_all(&folder).expect("removed");
 }
 
-/// Tables of one atmosphere that are as good as tests need, with more moments than certificates take, coarse, 5 % too bright, and without a
-/// moment.
+/// Tables of one atmosphere: one as good as tests need and with more moments than certificates take; a coarse one; one 5 % too bright; and one
+/// without a moment, and with last moments a thousand times too large, which certificates leave out.
 fn spoiled(medium: &Medium<4>, albedo: [f64; 4]) -> [Solved<4>; 4] {
     let sound = Resolution { degree: 14, ..TEST };
     let coarse = Resolution { levels: 10, suns: 26, zeniths: [4, 2, 3], parts: 2, degree: 6, change: 5e-4 };
@@ -382,7 +384,18 @@ fn spoiled(medium: &Medium<4>, albedo: [f64; 4]) -> [Solved<4>; 4] {
     for moments in wrong.field.moments.chunks_exact_mut(count) {
         moments[1] = [0.0; 4];
     }
+    spoil_last(&mut wrong);
     [sound, coarse, bright, wrong]
+}
+
+/// Makes the moments that certificates leave out a thousand times as large.
+fn spoil_last<const L: usize>(solved: &mut Solved<L>) {
+    let moments = &solved.optics.moments;
+    for (moment, (l, _)) in solved.field.moments.iter_mut().zip(moments.pairs().iter().cycle()) {
+        if *l > sources::DEGREE {
+            *moment = moment.map(|value| 1e3 * value);
+        }
+    }
 }
 
 #[test]
@@ -517,6 +530,33 @@ fn a_panorama_shows_what_looks_see() {
         }
         assert!(worst < 2e-3 && sum / count < 1e-4, "{altitude}, {sun_zenith}: {worst:e}, {:e}", sum / count);
         assert!(seen.looks() > 500, "{altitude}, {sun_zenith}: only {} looks", seen.looks());
+    }
+}
+
+#[test]
+fn sums_over_degrees_give_the_sources_of_each_azimuth() {
+    // At a level, by sums that all azimuths share and by those of each: to the rounding of a hundred single numbers, of the largest.
+    let solved = Solved::new(&mixed(), EARTH, [0.3; 4], &TEST).expect("round");
+    let (level, zenith, species) = (3, 0.35, solved.optics.species.len());
+    let altitude = solved.grid.levels[level];
+    let scattering: Vec<[f64; 4]> = (0..species).map(|k| [1e-5, 2e-5, 3e-5, 1e-5 * (k + 1) as f64]).collect();
+    let (mut folded, mut harmonics, mut sources) = (Folded::default(), Vec::new(), [[0.0_f32; 4]; MOST_DEGREE + 2]);
+    let reach = solved.optics.reach(&scattering).expect("they scatter");
+    solved.optics.moments.at(zenith, &mut harmonics);
+    solved.optics.add_sources(&scattering, &mut sources[..reach.sources]);
+    let degrees = harmonics.iter().zip(solved.optics.moments.sources());
+    let weights: Vec<_> = degrees.map(|(s, &source)| sources[source].map(|one| one * *s as f32)).collect();
+    let place = Crossing { level, s: zenith * (solved.grid.radius + altitude) };
+    for there in [0.5, -0.03, 0.02, 0.5] {
+        for azimuth in [0.0_f64, 1.0, 2.5] {
+            let across = ((1.0 - zenith * zenith) * (1.0 - there * there)).sqrt();
+            let cosines = [zenith, there, zenith * there + across * azimuth.cos()];
+            let shared = folded.source(&solved, (0, &place, reach), cosines, &weights);
+            let own = solved.diffuse(&[(level, 1.0)], cosines, &scattering, &mut harmonics);
+            for (shared, own) in shared.iter().zip(own) {
+                assert!(*shared > 0.0 && (shared / own - 1.0).abs() < 1e-5, "{there} {azimuth}: {shared:e} {own:e}");
+            }
+        }
     }
 }
 

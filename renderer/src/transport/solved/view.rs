@@ -198,7 +198,7 @@ impl<const L: usize> Solved<L> {
         if lagrange == [0.0; 4] {
             return total;
         }
-        let cosines = cosines(turn(zenith, there, towards), reach.degree);
+        let cosines = cosines(azimuth_cosine(zenith, there, towards), reach.degree);
         let (suns, moments) = (self.grid.suns.count(), self.optics.moments.count());
         for &(level, share) in levels {
             let lagrange = lagrange.map(|weight| share * weight);
@@ -224,7 +224,7 @@ impl<const L: usize> Solved<L> {
 /// Cosine of the azimuth of a direction looked in from the sun's: of its zenith angle, of the sun's, and of the angle between the two the
 /// cosines are given. 1 where one of them is vertical.
 #[inline(always)]
-pub(super) fn turn(zenith: f64, there: f64, towards: f64) -> f64 {
+pub(super) fn azimuth_cosine(zenith: f64, there: f64, towards: f64) -> f64 {
     let across = ((1.0 - zenith) * (1.0 + zenith) * (1.0 - there) * (1.0 + there)).max(0.0).sqrt();
     if across > 1e-9 { ((towards - zenith * there) / across).clamp(-1.0, 1.0) } else { 1.0 }
 }
