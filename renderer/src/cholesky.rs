@@ -90,7 +90,7 @@ mod tests {
         let r = 0.7_f64;
         let all = Cholesky::new(COUNT, |i, j| r.powi(i.abs_diff(j) as i32));
         let right = |i: usize, j: usize| match i.abs_diff(j) {
-            0 if i % (COUNT - 1) == 0 => 1.0 / (1.0 - r * r),
+            0 if i.is_multiple_of(COUNT - 1) => 1.0 / (1.0 - r * r),
             0 => (1.0 + r * r) / (1.0 - r * r),
             1 => -r / (1.0 - r * r),
             _ => 0.0,
