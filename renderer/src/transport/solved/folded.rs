@@ -23,6 +23,12 @@ pub(super) struct Folded<const L: usize> {
 }
 
 impl<const L: usize> Folded<L> {
+    /// Of so many crossings: with room for what one look asks for, four suns at each.
+    pub(super) fn new(solved: &Solved<L>, crossings: usize) -> Self {
+        let room = 4 * crossings * (solved.optics.moments.degree() + 1);
+        Self { begins: vec![0; crossings * solved.grid.suns.count()], sums: Vec::with_capacity(room) }
+    }
+
     /// J at a crossing of that number, in a direction looked in; of its zenith angle there, of the sun's, and of the angle between the two the
     /// cosines are given, and s_l S_lm(mu) of each moment.
     #[inline(always)]
@@ -41,20 +47,17 @@ impl<const L: usize> Folded<L> {
             return total;
         }
         let (orders, row) = (reach.degree + 1, number * suns.count());
-        if self.begins.len() < row + suns.count() {
-            self.begins.resize(row + suns.count(), 0);
-        }
-        let mut begins = [0; 4];
-        for (k, begin) in begins.iter_mut().enumerate() {
-            let sun = first as usize + k;
-            let mut known = self.begins[row + sun];
-            if known == 0 {
-                known = self.sums.len() as u32 + 1;
-                self.begins[row + sun] = known;
-                self.fold(solved, place.level * suns.count() + sun, reach, weights);
+        let (place, row) = (place.level * suns.count() + first as usize, row + first as usize);
+        if self.begins[row..row + 4] == [0; 4] {
+            self.fold::<4>(solved, (row, place), reach, weights);
+        } else {
+            for k in 0..4 {
+                if self.begins[row + k] == 0 {
+                    self.fold::<1>(solved, (row + k, place + k), reach, weights);
+                }
             }
-            *begin = known as usize - 1;
         }
+        let begins = [0, 1, 2, 3].map(|k| self.begins[row + k] as usize - 1);
         let cosines = cosines(azimuth_cosine(zenith, there, towards), reach.degree);
         let [a, b, c, d] = begins.map(|begin| &self.sums[begin..begin + orders]);
         for ((((cosine, a), b), c), d) in cosines.iter().zip(a).zip(b).zip(c).zip(d) {
@@ -67,21 +70,38 @@ impl<const L: usize> Folded<L> {
         total
     }
 
-    /// Adds the F_m of a place of the table.
+    /// Adds the F_m of so many suns that follow each other, from a row and a place of the table on.
     #[inline(always)]
-    fn fold(&mut self, solved: &Solved<L>, place: usize, reach: Reach, weights: &[[f32; L]]) {
+    fn fold<const N: usize>(
+        &mut self,
+        solved: &Solved<L>,
+        (row, place): (usize, usize),
+        reach: Reach,
+        weights: &[[f32; L]],
+    ) {
         let (moments, count) = (&solved.optics.moments, solved.optics.moments.count());
-        let here = &solved.field.moments[place * count..][..reach.count];
-        let mut sums = [[0.0_f32; L]; MOST_DEGREE + 1];
+        let here = &solved.field.moments[place * count..][..N * count];
+        let mut sums = [[[0.0_f32; L]; MOST_DEGREE + 1]; N];
         for (m, run) in moments.runs(reach.count) {
-            let mut sum = sums[m];
-            for (weight, moment) in weights[run.clone()].iter().zip(&here[run]) {
-                for j in 0..L {
-                    sum[j] += weight[j] * moment[j];
+            let mut own = [[0.0_f32; L]; N];
+            for i in run {
+                let weight = &weights[i];
+                for k in 0..N {
+                    let moment = &here[k * count + i];
+                    for j in 0..L {
+                        own[k][j] += weight[j] * moment[j];
+                    }
                 }
             }
-            sums[m] = sum;
+            for k in 0..N {
+                for j in 0..L {
+                    sums[k][m][j] += own[k][j];
+                }
+            }
         }
-        self.sums.extend_from_slice(&sums[..=reach.degree]);
+        for (k, sums) in sums.iter().enumerate() {
+            self.begins[row + k] = self.sums.len() as u32 + 1;
+            self.sums.extend_from_slice(&sums[..=reach.degree]);
+        }
     }
 }

@@ -176,6 +176,27 @@ impl<const L: usize> Optics<L> {
         (largest > 0.0).then_some(reach)
     }
 
+    /// Adds of each moment that counts what it sends in a direction of that zenith angle (its cosine) where the species have these weights:
+    /// s_l S_lm(mu). The harmonics are of use again.
+    #[inline(always)]
+    fn add_weights(
+        &self,
+        (weights, reach, zenith): (&[[f64; L]], Reach, f64),
+        harmonics: &mut Vec<f64>,
+        all: &mut Vec<[f32; L]>,
+    ) {
+        self.moments.at(zenith, harmonics);
+        let mut sources = [[0.0; L]; MOST_DEGREE + 2];
+        self.add_sources(weights, &mut sources[..reach.sources]);
+        for (harmonic, &source) in harmonics.iter().zip(self.moments.sources()).take(reach.count) {
+            let mut weight = sources[source];
+            for one in &mut weight {
+                *one *= *harmonic as f32;
+            }
+            all.push(weight);
+        }
+    }
+
     /// Adds to each source, of the degree l, the sum over the species of b_l times their weights; b_2 of those that are no molecules may
     /// have a source apart.
     #[inline(always)]

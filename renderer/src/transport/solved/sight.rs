@@ -3,7 +3,6 @@
 
 use super::depths::Along;
 use super::folded::Folded;
-use super::harmonics::MOST_DEGREE;
 use super::line::{Crossing, Rule, Spread, Stencil, Take, crossings, quadrature};
 use super::onward::{Ahead, Dipoles};
 use super::view::Seen;
@@ -141,19 +140,11 @@ impl<'a, const L: usize> Sight<'a, L> {
             let mut harmonics = Vec::with_capacity(optics.moments.count());
             for (place, weights) in places.iter().zip(weights.chunks_exact(species.max(1))) {
                 let Some(reach) = optics.reach(weights) else { continue };
-                optics.moments.at(all.zenith(place), &mut harmonics);
-                let mut scattered = [[0.0; L]; MOST_DEGREE + 2];
-                optics.add_sources(weights, &mut scattered[..reach.sources]);
-                let first = all.weights.len();
-                for (harmonic, &source) in harmonics.iter().zip(optics.moments.sources()).take(reach.count) {
-                    let mut weight = scattered[source];
-                    for one in &mut weight {
-                        *one *= *harmonic as f32;
-                    }
-                    all.weights.push(weight);
-                }
+                let (first, zenith) = (all.weights.len(), all.zenith(place));
+                optics.add_weights((weights, reach, zenith), &mut harmonics, &mut all.weights);
                 all.sources.push((*place, reach, first..all.weights.len()));
             }
+            all.kept.get_mut().folded = Folded::new(solved, all.sources.len());
             all.dipoles = places.iter().copied().zip(dipoles.as_chunks::<2>().0.iter().copied()).collect();
         }
         Some(all)

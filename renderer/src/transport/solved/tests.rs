@@ -535,17 +535,14 @@ fn a_panorama_shows_what_looks_see() {
 
 #[test]
 fn sums_over_degrees_give_the_sources_of_each_azimuth() {
-    // At a level, by sums that all azimuths share and by those of each: to the rounding of a hundred single numbers, of the largest.
+    // At a level, by sums that all azimuths share and by those of each: to the rounding of a hundred single numbers.
     let solved = Solved::new(&mixed(), EARTH, [0.3; 4], &TEST).expect("round");
     let (level, zenith, species) = (3, 0.35, solved.optics.species.len());
     let altitude = solved.grid.levels[level];
     let scattering: Vec<[f64; 4]> = (0..species).map(|k| [1e-5, 2e-5, 3e-5, 1e-5 * (k + 1) as f64]).collect();
-    let (mut folded, mut harmonics, mut sources) = (Folded::default(), Vec::new(), [[0.0_f32; 4]; MOST_DEGREE + 2]);
+    let (mut folded, mut harmonics, mut weights) = (Folded::new(&solved, 1), Vec::new(), Vec::new());
     let reach = solved.optics.reach(&scattering).expect("they scatter");
-    solved.optics.moments.at(zenith, &mut harmonics);
-    solved.optics.add_sources(&scattering, &mut sources[..reach.sources]);
-    let degrees = harmonics.iter().zip(solved.optics.moments.sources());
-    let weights: Vec<_> = degrees.map(|(s, &source)| sources[source].map(|one| one * *s as f32)).collect();
+    solved.optics.add_weights((&scattering, reach, zenith), &mut harmonics, &mut weights);
     let place = Crossing { level, s: zenith * (solved.grid.radius + altitude) };
     for there in [0.5, -0.03, 0.02, 0.5] {
         for azimuth in [0.0_f64, 1.0, 2.5] {
