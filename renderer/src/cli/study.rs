@@ -63,9 +63,9 @@ pub(super) enum StudyName {
     Strip,
     /// Where clear skies have no polarisation over the sun's elevation: the points of Arago, Babinet and Brewster
     NeutralPoints,
-    /// What plans are made from: errors and costs of every rung on 720 scenes (half an hour of a core; each atmosphere is stored when it is done)
+    /// What plans are made from: errors and costs of every rung on 1440 scenes (an hour and a half of a core; each atmosphere is stored when it is done)
     Plans,
-    /// The same of 102 other scenes, by which plans are judged (4 core-minutes)
+    /// The same of 102 other scenes, by which plans are judged (7 core-minutes)
     HeldOut,
     /// How good plans are: those of the held-out scenes beside what is true, by what is stored
     Planner,

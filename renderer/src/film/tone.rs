@@ -46,8 +46,15 @@ pub fn automatic_ev(luminances: impl IntoIterator<Item = f64>) -> f64 {
 /// The luminance in cd/m^2 that becomes display white where the logarithmic mean of these luminances, of those above 0, becomes 22 % of it.
 #[must_use]
 pub fn automatic_white(luminances: &[f64]) -> f64 {
-    let lit = || luminances.iter().filter(|y| **y > 0.0);
-    (lit().map(|y| y.ln()).sum::<f64>() / lit().count() as f64).exp() / KEY
+    automatic_white_of(luminances.iter().map(|y| (1.0, *y)))
+}
+
+/// As [`automatic_white`], of pairs of a weight and a luminance.
+#[must_use]
+pub fn automatic_white_of(weighted: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let sums = |(all, logs): (f64, f64), (weight, y): (f64, f64)| (all + weight, logs + weight * y.ln());
+    let (all, logs) = weighted.filter(|(_, y)| *y > 0.0).fold((0.0, 0.0), sums);
+    (logs / all).exp() / KEY
 }
 
 /// CIELAB of a colour in XYZ (cd/m^2) as the display shows it, for a white in cd/m^2.

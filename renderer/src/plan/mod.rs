@@ -25,6 +25,7 @@ use crate::atmosphere::Haze;
 use crate::render::Sky;
 use crate::scene::{Albedo, Scene};
 use serde::{Deserialize, Serialize};
+use tables::units::{EARTH_RADIUS_M, KM};
 use tables::views::Biome;
 
 /// What an error is of. Each is a root mean square over directions.
@@ -69,6 +70,9 @@ impl Metric {
     }
 }
 
+/// From above this altitude one looks all around, from below it above the horizon: where errors are measured.
+pub const HIGH_KM: f64 = 1.0;
+
 /// What errors and costs of a scene depend on, as far as the measurements tell scenes apart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Traits {
@@ -105,15 +109,20 @@ impl Traits {
     }
 
     /// Coordinates in which errors are smooth, each in units of the distance over which they change: elevation of the sun, finest at the
-    /// horizon; amount of aerosol; albedo; altitude, which above the air makes no difference; ozone.
+    /// horizon; amount of aerosol; albedo; altitude in the air, and whether the ground is looked at from there; how much of the planet is seen, by
+    /// the angle at its middle to its horizon; ozone.
     #[must_use]
-    pub fn coordinates(&self) -> [f64; 5] {
+    pub fn coordinates(&self) -> [f64; 7] {
         const TOP_KM: f64 = 120.0;
+        const PLANET_KM: f64 = EARTH_RADIUS_M / KM;
+        let seen = (PLANET_KM / (PLANET_KM + self.altitude_km)).acos();
         [
             ((self.sun_elevation_deg + 1.0) / 3.0).asinh(),
-            0.7 * (self.optical_depth / 0.05).ln_1p(),
+            (self.optical_depth / 0.05).ln_1p(),
             0.75 * self.albedo,
             1.05 * (self.altitude_km.min(TOP_KM) / 2.0).ln_1p(),
+            0.7 * f64::from(u8::from(self.altitude_km > HIGH_KM)),
+            seen.to_degrees() / 30.0,
             0.2 * self.ozone_du / 100.0,
         ]
     }

@@ -7,10 +7,13 @@ use crate::sampling::{Sampler, spiral};
 use crate::spectrum::Wavelengths;
 use crate::transport::{Fineness, Method};
 use std::path::Path;
+use std::sync::LazyLock;
 use std::sync::atomic::AtomicBool;
 
-fn evidence() -> Evidence {
-    Evidence::new(&Measured::stored().expect("parses")).expect("enough")
+fn evidence() -> &'static Evidence {
+    static EVIDENCE: LazyLock<Evidence> =
+        LazyLock::new(|| Evidence::new(&Measured::stored().expect("parses")).expect("enough"));
+    &EVIDENCE
 }
 
 fn traits(sun_elevation_deg: f64, biome: Option<Biome>, optical_depth: f64) -> Traits {
@@ -83,7 +86,7 @@ fn a_smaller_error_never_has_a_worse_or_cheaper_plan() {
             let mut before: Option<Plan> = None;
             for share in [0.1, 0.05, 0.02, 0.01, 0.005, 0.002] {
                 let asked = metric.unit(share);
-                let plan = Plan::of(&evidence, &Scene::default(), (&traits, None), asked, metric);
+                let plan = Plan::of(evidence, &Scene::default(), (&traits, None), asked, metric);
                 let bound = plan.error().map(|[_, bound]| bound);
                 assert!(plan.safe.is_some() || bound.is_some_and(|bound| bound <= asked), "{plan:?}");
                 if let (Some(before), Some(cost)) = (&before, plan.cost()) {
@@ -99,7 +102,7 @@ fn a_smaller_error_never_has_a_worse_or_cheaper_plan() {
 #[test]
 fn plans_climb_until_there_are_paths() {
     let evidence = evidence();
-    let mut plan = Plan::of(&evidence, &Scene::default(), (&some()[0], None), 0.05, Metric::Luminance);
+    let mut plan = Plan::of(evidence, &Scene::default(), (&some()[0], None), 0.05, Metric::Luminance);
     let mut rungs = 0;
     while let Some(next) = plan.up(&Scene::default()) {
         plan = next;
@@ -117,7 +120,7 @@ fn a_scene_outside_is_told_so_and_gets_the_safe_plan() {
         let mut scene = Scene::default();
         change(&mut scene);
         let what = super::outside(&scene, traits);
-        let plan = Plan::of(&evidence, &scene, (traits, what), 0.01, Metric::Radiance);
+        let plan = Plan::of(evidence, &scene, (traits, what), 0.01, Metric::Radiance);
         assert!(plan.prediction.is_none() && plan.error().is_none());
         let planned = plan.scene(&scene);
         planned.validate().expect("valid");
@@ -142,7 +145,7 @@ fn a_scene_outside_is_told_so_and_gets_the_safe_plan() {
 fn who_keeps_stokes_parameters_gets_polarised_light() {
     let evidence = evidence();
     let scene = Scene { polarisation: true, ..Scene::default() };
-    let plan = Plan::of(&evidence, &scene, (&some()[0], None), 0.5, Metric::Luminance);
+    let plan = Plan::of(evidence, &scene, (&some()[0], None), 0.5, Metric::Luminance);
     assert!(plan.candidate.is_some_and(|one| one.transfer.polarised));
     assert!(plan.scene(&scene).polarisation);
 }
@@ -165,7 +168,7 @@ fn a_planned_picture_has_the_asked_error() {
     let right = luminances(&sky(&exact));
     let mean = right.iter().sum::<f64>() / 40.0;
     for asked in [0.05, 0.01] {
-        let plan = Plan::of(&evidence, &scene, (&traits(30.0, None, 0.0), None), asked, Metric::Luminance);
+        let plan = Plan::of(evidence, &scene, (&traits(30.0, None, 0.0), None), asked, Metric::Luminance);
         let planned = plan.scene(&scene);
         let found = luminances(&sky(&planned));
         let square = right.iter().zip(&found).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / 40.0;

@@ -149,7 +149,7 @@ fn change(ozone: &OzoneCrossSection, whole: &Seen, less: &Seen) -> Result<[f64; 
         let square = whole.factors.iter().zip(&less.factors).map(|(a, b)| (a[j] - filled(b)).powi(2)).sum::<f64>();
         radiance += square / count / (mean * mean) / nm.len() as f64;
     }
-    let [luminance, colour] = shown_apart(&whole.colours, &less.colours);
+    let [luminance, colour] = shown_apart(&whole.colours, &less.colours, &vec![1.0 / count; whole.colours.len()]);
     Ok([radiance.sqrt(), luminance, colour])
 }
 

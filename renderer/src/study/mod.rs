@@ -12,12 +12,15 @@ pub mod stability;
 pub mod strip;
 pub mod wavelengths;
 
+use crate::camera::direction_at;
 use crate::film::tone;
+use crate::plan::HIGH_KM;
 use crate::render::RenderError;
 use crate::sampling::spiral;
 use crate::scene::Scene;
 use crate::spectrum::ciede2000;
 use glam::{DMat3, DVec3};
+use std::f64::consts::PI;
 use std::fmt::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tables::units::{EARTH_RADIUS_M, KM};
@@ -29,22 +32,50 @@ fn directions(scene: &Scene, (count, turn): (u32, f64)) -> Vec<DVec3> {
     let sine = top / (EARTH_RADIUS_M + scene.altitude_km * KM);
     let heights = match scene.altitude_km {
         _ if sine < 1.0 => [-1.0, -((1.0 - sine) * (1.0 + sine)).sqrt()],
-        altitude if altitude > 1.0 => [-1.0, 1.0],
+        altitude if altitude > HIGH_KM => [-1.0, 1.0],
         _ => [0.0, 1.0],
     };
     (0..count).map(|i| DMat3::from_rotation_z(turn) * spiral(i, count, heights)).collect()
 }
 
+/// Directions for what is alike on both sides of the sun's plane, the turned share of one away from each other, with the share that each has of the
+/// solid angle of [`directions`]: closer to each other towards the horizon and the sun's azimuth, where the sky changes most.
+fn towards_light(scene: &Scene, (count, shift): (u32, f64)) -> Vec<(DVec3, f64)> {
+    // The golden section: its multiples are spread evenly over the numbers from 0 to 1.
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    let (top, own) = (EARTH_RADIUS_M + scene.top_km * KM, EARTH_RADIUS_M + scene.altitude_km * KM);
+    let height = |sine: f64| -((1.0 - sine) * (1.0 + sine)).max(0.0).sqrt();
+    let horizon = height(EARTH_RADIUS_M / own);
+    let (lowest, middle, highest) = match scene.altitude_km {
+        _ if top < own => (-1.0, horizon, height(top / own)),
+        altitude if altitude > HIGH_KM => (-1.0, horizon, 1.0),
+        _ => (0.0, 0.0, 1.0),
+    };
+    let first = if lowest < middle { -1.0 } else { 0.0 };
+    let of = |i: u32| {
+        // z is a square of a number from -1 or 0 to 1, the horizon at 0; the azimuth from the sun a square of one from 0 to 1.
+        let s = first + (1.0 - first) * (f64::from(i) + 0.5) / f64::from(count);
+        let t = (f64::from(i) * GOLDEN + shift).fract();
+        let part = if s > 0.0 { highest - middle } else { middle - lowest };
+        let z = middle + part * s * s.abs();
+        let share = s.abs() * part * t;
+        let level = direction_at(scene.sun_azimuth_deg.to_radians() + PI * t * t, 0.0);
+        (level * ((1.0 - z) * (1.0 + z)).sqrt() + DVec3::Z * z, share)
+    };
+    let all = || (0..count).map(of);
+    let whole: f64 = all().map(|(_, share)| share).sum();
+    all().map(|(direction, share)| (direction, share / whole)).collect()
+}
+
 /// How far colours are off what is right: rms of luminance over its mean, rms of CIEDE2000 as a PNG would show both, exposed for what is right.
-fn shown_apart(right: &[[f64; 3]], seen: &[[f64; 3]]) -> [f64; 2] {
-    let count = right.len() as f64;
-    let luminances: Vec<f64> = right.iter().map(|xyz| xyz[1]).collect();
-    let mean = luminances.iter().sum::<f64>() / count;
-    let pairs = || right.iter().zip(seen);
-    let luminance = pairs().map(|(r, s)| (r[1] - s[1]).powi(2)).sum::<f64>() / count;
-    let white = tone::automatic_white(&luminances);
+/// `shares` are those that directions have of what is looked at, together 1.
+fn shown_apart(right: &[[f64; 3]], seen: &[[f64; 3]], shares: &[f64]) -> [f64; 2] {
+    let mean = right.iter().zip(shares).map(|(right, share)| share * right[1]).sum::<f64>();
+    let all = || right.iter().zip(seen).zip(shares);
+    let luminance = all().map(|((r, s), share)| share * (r[1] - s[1]).powi(2)).sum::<f64>();
+    let white = tone::automatic_white_of(right.iter().zip(shares).map(|(right, share)| (*share, right[1])));
     let shown = |colour: &[f64; 3]| tone::displayed(*colour, white);
-    let colour = pairs().map(|(r, s)| ciede2000(shown(r), shown(s)).powi(2)).sum::<f64>() / count;
+    let colour = all().map(|((r, s), share)| share * ciede2000(shown(r), shown(s)).powi(2)).sum::<f64>();
     [luminance.sqrt() / mean, colour.sqrt()]
 }
 
@@ -125,6 +156,29 @@ impl Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn directions_towards_light_have_the_means_of_even_ones() {
+        for (altitude_km, sun_azimuth_deg) in [(0.002, 180.0), (8.0, 30.0), (500.0, 250.0)] {
+            let scene = Scene { altitude_km, sun_azimuth_deg, ..Scene::default() };
+            let sun = direction_at(sun_azimuth_deg.to_radians(), 0.0);
+            // Height, a broad lobe about the sun's azimuth, a layer about the level.
+            let of = |direction: &DVec3| [direction.z, direction.dot(sun).exp(), (-direction.z.abs() / 0.05).exp()];
+            let even = directions(&scene, (100_000, 0.0));
+            for shift in [0.0, 0.5] {
+                let few = towards_light(&scene, (256, shift));
+                for k in 0..3 {
+                    let right = even.iter().map(|direction| of(direction)[k]).sum::<f64>() / 1e5;
+                    let found: f64 = few.iter().map(|(direction, share)| share * of(direction)[k]).sum();
+                    // 256 directions leave about a hundredth.
+                    assert!(
+                        (found - right).abs() < 0.015 * right.abs().max(0.7),
+                        "{altitude_km} km, {k}: {found} {right}"
+                    );
+                }
+            }
+        }
+    }
 
     #[test]
     fn cubics_are_met() {

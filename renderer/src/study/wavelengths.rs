@@ -112,7 +112,8 @@ pub fn make(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
                     };
                     way.colour.xyz(&way.wavelengths.nm().iter().map(at).collect::<Vec<_>>())
                 };
-                let off = shown_apart(&right, &looked.iter().map(of).collect::<Vec<_>>());
+                let even = vec![1.0 / right.len() as f64; right.len()];
+                let off = shown_apart(&right, &looked.iter().map(of).collect::<Vec<_>>(), &even);
                 squares[panel].iter_mut().zip(off).for_each(|(sum, off)| *sum += share * off * off);
             }
         }

@@ -13,7 +13,7 @@ use crate::render::{RenderError, Sky};
 use crate::sampling::Sampler;
 use crate::scene::Scene;
 use crate::spectrum::{Between, Colour, Wavelengths};
-use crate::study::{cubic, directions, shown_apart};
+use crate::study::{cubic, shown_apart, towards_light};
 use crate::transport::{Fineness, Method};
 use glam::DVec3;
 
@@ -45,24 +45,21 @@ impl Turned {
         Ok(Self { sky: sky?, solve_s })
     }
 
-    /// What is seen of a scene, and the seconds of a look.
-    fn look(&mut self, scene: &Scene, directions: &[DVec3]) -> Result<(Factors, f64), RenderError> {
+    /// What is seen of a scene in some directions, and the seconds of a look, a mean over even ones.
+    fn look(&mut self, scene: &Scene, directions: &[DVec3], even: &[DVec3]) -> Result<(Factors, f64), RenderError> {
         self.sky.turn(&Scene { width: Some(1), height: Some(1), ..scene.clone() })?;
         let sampler = Sampler::new(0, 0, 0);
-        let look = || {
-            let one = |direction: &DVec3| {
-                let mut factors = vec![0.0; self.sky.wavelengths()];
-                self.sky.radiance(*direction, &sampler, &mut factors);
-                factors
-            };
-            directions.iter().map(one).collect::<Factors>()
+        let look = |direction: &DVec3| {
+            let mut factors = vec![0.0; self.sky.wavelengths()];
+            self.sky.radiance(*direction, &sampler, &mut factors);
+            factors
         };
-        let (seen, mut seconds) = timed(look);
-        let mut looks = directions.len();
+        let seen: Factors = directions.iter().map(look).collect();
+        let (mut seconds, mut looks) = (0.0, 0);
         // The clock goes in steps of some thousandths.
         while seconds < LEAST_S && looks < MOST_LOOKS {
-            seconds += timed(look).1;
-            looks += directions.len();
+            seconds += timed(|| even.iter().map(look).collect::<Factors>()).1;
+            looks += even.len();
         }
         Ok((seen, seconds / looks as f64))
     }
@@ -129,25 +126,28 @@ impl Eyes {
         usual.iter().zip(eight).map(one).collect()
     }
 
-    /// What a transfer at one of the spectra is off: radiance, luminance, colour.
-    fn errors(&self, truth: &Factors, found: &Factors, spectrum: Spectrum) -> [f64; 3] {
+    /// What a transfer at one of the spectra is off: radiance, luminance, colour; `shares` are those of directions.
+    fn errors(&self, (truth, shares): (&Factors, &[f64]), found: &Factors, spectrum: Spectrum) -> [f64; 3] {
         let eye = self.eye(spectrum);
-        let count = truth.len() as f64;
         let few: Factors = found.iter().map(|factors| eye.places.iter().map(|&i| factors[i]).collect()).collect();
         let filled: Factors = few.iter().map(|factors| eye.filled(factors)).collect();
         let mut radiance = 0.0;
         let kept = Spectrum::Even16.places();
         for &j in &kept {
-            let mean = truth.iter().map(|t| t[j]).sum::<f64>() / count;
-            let square = truth.iter().zip(&filled).map(|(t, f)| (t[j] - f[j]).powi(2)).sum::<f64>() / count;
+            let mean = truth.iter().zip(shares).map(|(t, share)| share * t[j]).sum::<f64>();
+            let all = truth.iter().zip(&filled).zip(shares);
+            let square = all.map(|((t, f), share)| share * (t[j] - f[j]).powi(2)).sum::<f64>();
             radiance += square / (mean * mean) / kept.len() as f64;
         }
         let right: Vec<[f64; 3]> = truth.iter().map(|factors| self.whole.xyz(factors)).collect();
         let seen: Vec<[f64; 3]> = few.iter().map(|factors| eye.colour.xyz(factors)).collect();
-        let [luminance, colour] = shown_apart(&right, &seen);
+        let [luminance, colour] = shown_apart(&right, &seen, shares);
         [radiance.sqrt(), luminance, colour]
     }
 }
+
+/// Even directions, in which looks are timed and paths are traced.
+const EVEN: u32 = 64;
 
 /// Samples of a path in each direction, to see how far they spread.
 const PATHS: u32 = 8;
@@ -195,16 +195,17 @@ pub(super) fn measure(
     let mut paths = Turned::new(data, &paths)?;
     let mut rows = Vec::new();
     for scene in scenes {
-        let directions = directions(scene, set.directions());
-        let (detail, whole_look_s) = whole.look(scene, &directions)?;
-        let (_, four_look_s) = four.look(scene, &directions)?;
-        let right = eyes.whole(&detail, &truth.look(scene, &directions)?.0);
+        let (directions, shares): (Vec<DVec3>, Vec<f64>) = towards_light(scene, set.directions()).into_iter().unzip();
+        let even = crate::study::directions(scene, (EVEN, 0.0));
+        let (detail, whole_look_s) = whole.look(scene, &directions, &even)?;
+        let (_, four_look_s) = four.look(scene, &directions, &even)?;
+        let right = eyes.whole(&detail, &truth.look(scene, &directions, &even)?.0);
         let mut looked: Vec<Option<(Factors, [f64; 2])>> = Vec::new();
         for transfer in &mut transfers {
             looked.push(match transfer {
                 None => None,
                 Some(one) => {
-                    let (seen, look_s) = one.look(scene, &directions)?;
+                    let (seen, look_s) = one.look(scene, &directions, &even)?;
                     Some((seen, [one.solve_s, look_s]))
                 }
             });
@@ -220,7 +221,7 @@ pub(super) fn measure(
             };
             solve_look_s[i] = times;
             let seen = eyes.whole(&detail, &seen);
-            errors.extend(Spectrum::ALL.into_iter().map(|spectrum| eyes.errors(&right, &seen, spectrum)));
+            errors.extend(Spectrum::ALL.into_iter().map(|spectrum| eyes.errors((&right, &shares), &seen, spectrum)));
         }
         let [coarse_solve_s, coarse_look_s] = solve_look_s[table(Fineness::Coarse, false).index()];
         let light = table(Fineness::Light, false).index();
@@ -235,7 +236,7 @@ pub(super) fn measure(
                 [whole.solve_s / coarse_solve_s, whole_look_s / coarse_look_s],
             ],
             panorama: looks,
-            path: spread(&mut paths, scene, &directions)?,
+            path: spread(&mut paths, scene, &even)?,
         };
         let traits = Traits::of(scene, &whole.sky);
         rows.push(Row { atmosphere: number, traits, season: (scene.month, scene.latitude_deg), errors, costs });

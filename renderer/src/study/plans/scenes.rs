@@ -18,17 +18,18 @@ impl Set {
     #[must_use]
     pub fn size(self) -> (usize, usize) {
         match self {
-            Self::Measured => (120, 6),
+            Self::Measured => (240, 6),
             Self::HeldOut => (17, 6),
         }
     }
 
-    /// Directions in which a scene is looked at, and by how many radians they are turned about the vertical.
+    /// Directions in which a scene is looked at, and the share of the way round that their azimuths are shifted by. Much of an error is where even
+    /// ones hardly come, at the horizon and the limb: [`crate::study::towards_light`].
     #[must_use]
     pub fn directions(self) -> (u32, f64) {
         match self {
-            Self::Measured => (64, 0.0),
-            Self::HeldOut => (96, 1.0),
+            Self::Measured => (256, 0.0),
+            Self::HeldOut => (256, 0.5),
         }
     }
 
