@@ -189,7 +189,7 @@ pub fn make(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Atlas, Rende
                 // Skies are made for the first place, and turned.
                 let first = Scene { altitude_km: PLACES[0].0, sun_elevation_deg: PLACES[0].1, ..base.clone() };
                 let [first_whole, first_less] = [term.with, term.without].map(|change| changed(change, first.clone()));
-                let looks = directions(&scene, (DIRECTIONS, 0.0));
+                let looks = directions(&scene, DIRECTIONS);
                 let whole = seen(data, &mut skies, &whole, &first_whole, &looks)?;
                 let less = seen(data, &mut skies, &less, &first_less, &looks)?;
                 let sky = &skies[0].1;

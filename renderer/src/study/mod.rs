@@ -19,38 +19,36 @@ use crate::render::RenderError;
 use crate::sampling::spiral;
 use crate::scene::Scene;
 use crate::spectrum::ciede2000;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tables::units::{EARTH_RADIUS_M, KM};
 
-/// Where one looks: above the horizon from the ground, all around from within the air, at the planet and its air from space; even in solid angle, all turned
-/// by so many radians about the vertical.
-fn directions(scene: &Scene, (count, turn): (u32, f64)) -> Vec<DVec3> {
-    let top = EARTH_RADIUS_M + scene.top_km * KM;
-    let sine = top / (EARTH_RADIUS_M + scene.altitude_km * KM);
-    let heights = match scene.altitude_km {
-        _ if sine < 1.0 => [-1.0, -((1.0 - sine) * (1.0 + sine)).sqrt()],
-        altitude if altitude > HIGH_KM => [-1.0, 1.0],
-        _ => [0.0, 1.0],
-    };
-    (0..count).map(|i| DMat3::from_rotation_z(turn) * spiral(i, count, heights)).collect()
+/// Heights z of directions in which one looks, the lowest, the horizon's and the highest: above the horizon from the ground, all around from within the
+/// air, at the planet and its air from space.
+fn heights(scene: &Scene) -> [f64; 3] {
+    let (top, own) = (EARTH_RADIUS_M + scene.top_km * KM, EARTH_RADIUS_M + scene.altitude_km * KM);
+    let below = |sine: f64| -((1.0 - sine) * (1.0 + sine)).max(0.0).sqrt();
+    let horizon = below(EARTH_RADIUS_M / own);
+    match scene.altitude_km {
+        _ if top < own => [-1.0, horizon, below(top / own)],
+        altitude if altitude > HIGH_KM => [-1.0, horizon, 1.0],
+        _ => [0.0, 0.0, 1.0],
+    }
 }
 
-/// Directions for what is alike on both sides of the sun's plane, the turned share of one away from each other, with the share that each has of the
-/// solid angle of [`directions`]: closer to each other towards the horizon and the sun's azimuth, where the sky changes most.
+/// Where one looks ([`heights`]), evenly in solid angle.
+fn directions(scene: &Scene, count: u32) -> Vec<DVec3> {
+    let [lowest, _, highest] = heights(scene);
+    (0..count).map(|i| spiral(i, count, [lowest, highest])).collect()
+}
+
+/// Where one looks, closer to the horizon and to the sun's azimuth, where the sky changes most: directions on one side of the sun's plane, for the other
+/// is alike, each with its share of the solid angle, together 1. Azimuths go by the golden section, all shifted by a share of the way round.
 fn towards_light(scene: &Scene, (count, shift): (u32, f64)) -> Vec<(DVec3, f64)> {
-    // The golden section: its multiples are spread evenly over the numbers from 0 to 1.
     const GOLDEN: f64 = 0.618_033_988_749_895;
-    let (top, own) = (EARTH_RADIUS_M + scene.top_km * KM, EARTH_RADIUS_M + scene.altitude_km * KM);
-    let height = |sine: f64| -((1.0 - sine) * (1.0 + sine)).max(0.0).sqrt();
-    let horizon = height(EARTH_RADIUS_M / own);
-    let (lowest, middle, highest) = match scene.altitude_km {
-        _ if top < own => (-1.0, horizon, height(top / own)),
-        altitude if altitude > HIGH_KM => (-1.0, horizon, 1.0),
-        _ => (0.0, 0.0, 1.0),
-    };
+    let [lowest, middle, highest] = heights(scene);
     let first = if lowest < middle { -1.0 } else { 0.0 };
     let of = |i: u32| {
         // z is a square of a number from -1 or 0 to 1, the horizon at 0; the azimuth from the sun a square of one from 0 to 1.
@@ -164,7 +162,7 @@ mod tests {
             let sun = direction_at(sun_azimuth_deg.to_radians(), 0.0);
             // Height, a broad lobe about the sun's azimuth, a layer about the level.
             let of = |direction: &DVec3| [direction.z, direction.dot(sun).exp(), (-direction.z.abs() / 0.05).exp()];
-            let even = directions(&scene, (100_000, 0.0));
+            let even = directions(&scene, 100_000);
             for shift in [0.0, 0.5] {
                 let few = towards_light(&scene, (256, shift));
                 for k in 0..3 {

@@ -98,7 +98,7 @@ pub fn make(data: &Data, progress: &(dyn Fn(f64) + Sync)) -> Result<Chart, Rende
             let scene = scene(place);
             sky.turn(&scene)?;
             let mut looked = Vec::new();
-            for direction in directions(&scene, (DIRECTIONS, 0.0)) {
+            for direction in directions(&scene, DIRECTIONS) {
                 let mut factors = vec![0.0; sky.wavelengths()];
                 sky.radiance(direction, &Sampler::new(0, 0, 0), &mut factors);
                 looked.push(factors);

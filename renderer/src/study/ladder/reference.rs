@@ -95,7 +95,7 @@ impl Reference {
     pub(super) fn seen(&self, data: &Data, scene: &Scene) -> Result<Right, RenderError> {
         let wavelengths = Wavelengths::visible(WAVELENGTHS).unwrap_or_default();
         let colour = Colour::new(&data.sun, &data.observer, &data.ozone_cross_section, &wavelengths)?;
-        let directions = directions(scene, (DIRECTIONS, 0.0));
+        let directions = directions(scene, DIRECTIONS);
         let radiances = self.radiances(data, scene, &directions)?;
         let colours = radiances.iter().map(|factors| colour.xyz(factors)).collect();
         let (camera, (width, height)) = (scene.camera(), scene.size());

@@ -196,7 +196,7 @@ pub(super) fn measure(
     let mut rows = Vec::new();
     for scene in scenes {
         let (directions, shares): (Vec<DVec3>, Vec<f64>) = towards_light(scene, set.directions()).into_iter().unzip();
-        let even = crate::study::directions(scene, (EVEN, 0.0));
+        let even = crate::study::directions(scene, EVEN);
         let (detail, whole_look_s) = whole.look(scene, &directions, &even)?;
         let (_, four_look_s) = four.look(scene, &directions, &even)?;
         let right = eyes.whole(&detail, &truth.look(scene, &directions, &even)?.0);
