@@ -24,7 +24,7 @@ impl Set {
     }
 
     /// Directions in which a scene is looked at, and the share of the way round that their azimuths are shifted by. Much of an error is where even
-    /// ones hardly come, at the horizon and the limb: [`crate::study::towards_light`].
+    /// ones hardly come, at the horizon and the limb: `study::towards_light`.
     #[must_use]
     pub fn directions(self) -> (u32, f64) {
         match self {
